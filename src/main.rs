@@ -1,0 +1,2 @@
+//! Arguments → library → printed diagnostics → exit code.
+fn main() {}

@@ -53,3 +53,14 @@ pub enum Exclusion {
     /// It lies in another area that is judged on its own (a task area in its surrounding).
     InOtherArea,
 }
+
+/// How the points of an area are laid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GridRule {
+    /// EN 12464-1: p = 0.2 · 5^(lg d), p ≤ 10 m.
+    En,
+    /// Square cells of about this edge, m.
+    Step(f64),
+    /// Columns along u, rows along v.
+    Count([usize; 2]),
+}

@@ -45,7 +45,11 @@ pub struct Maintenance {
 
 impl Maintenance {
     /// A new installation: all factors 1.
-    pub const NEW: Self = Self { llmf: 1.0, lsf: 1.0, lmf: 1.0 };
+    pub const NEW: Self = Self {
+        llmf: 1.0,
+        lsf: 1.0,
+        lmf: 1.0,
+    };
 
     /// LLMF · LSF · LMF.
     pub fn factor(self) -> f64 {
@@ -87,7 +91,11 @@ pub fn orientation(aim: DVec3, rotate_deg: f64) -> DMat3 {
     } else {
         // Rodrigues' formula for the rotation that takes −z to `aim` about v = −z × aim.
         let v = DVec3::NEG_Z.cross(aim);
-        let skew = DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0));
+        let skew = DMat3::from_cols(
+            DVec3::new(0.0, v.z, -v.y),
+            DVec3::new(-v.z, 0.0, v.x),
+            DVec3::new(v.y, -v.x, 0.0),
+        );
         DMat3::IDENTITY + skew + skew * skew * (1.0 / (1.0 + cos))
     };
     // Who looks against the aim has it pointing at the eye, so counter-clockwise is a positive turn about it.

@@ -74,16 +74,32 @@ impl Statistic {
 
     /// The statistic of a key; `None` for anything else.
     pub fn parse(key: &str) -> Option<Self> {
-        [Self::Mean, Self::Min, Self::Max, Self::U0, Self::Ud, Self::Value]
-            .into_iter()
-            .find(|statistic| statistic.key() == key)
+        [
+            Self::Mean,
+            Self::Min,
+            Self::Max,
+            Self::U0,
+            Self::Ud,
+            Self::Value,
+        ]
+        .into_iter()
+        .find(|statistic| statistic.key() == key)
     }
 }
 
 /// The spellings a user may write, for error hints.
 pub const SPELLINGS: &[&str] = &[
-    "E_h", "E_v@azimuth", "E_n", "E_cyl", "E_semi@azimuth", "E_hemi", "E_sph", "modelling",
-    "L@azimuth,tilt", "UGR", "R_a",
+    "E_h",
+    "E_v@azimuth",
+    "E_n",
+    "E_cyl",
+    "E_semi@azimuth",
+    "E_hemi",
+    "E_sph",
+    "modelling",
+    "L@azimuth,tilt",
+    "UGR",
+    "R_a",
 ];
 
 impl Quantity {
@@ -103,12 +119,19 @@ impl Quantity {
             ("modelling", None) => Some(Self::Modelling),
             ("UGR", None) => Some(Self::Ugr),
             ("R_a", None) => Some(Self::ColourRendering),
-            ("E_v", Some(azimuth)) => Some(Self::Vertical { azimuth_deg: finite(azimuth)? }),
-            ("E_semi", Some(azimuth)) => Some(Self::Semicylindrical { azimuth_deg: finite(azimuth)? }),
+            ("E_v", Some(azimuth)) => Some(Self::Vertical {
+                azimuth_deg: finite(azimuth)?,
+            }),
+            ("E_semi", Some(azimuth)) => Some(Self::Semicylindrical {
+                azimuth_deg: finite(azimuth)?,
+            }),
             ("L", Some(angles)) => {
                 let (azimuth, tilt) = angles.split_once(',')?;
                 let tilt_deg = finite(tilt).filter(|tilt| tilt.abs() <= 90.0)?;
-                Some(Self::Luminance { azimuth_deg: finite(azimuth)?, tilt_deg })
+                Some(Self::Luminance {
+                    azimuth_deg: finite(azimuth)?,
+                    tilt_deg,
+                })
             }
             _ => None,
         }
@@ -125,7 +148,10 @@ impl Quantity {
             Self::Hemispherical => "E_hemi".into(),
             Self::Spherical => "E_sph".into(),
             Self::Modelling => "modelling".into(),
-            Self::Luminance { azimuth_deg, tilt_deg } => format!("L@{azimuth_deg},{tilt_deg}"),
+            Self::Luminance {
+                azimuth_deg,
+                tilt_deg,
+            } => format!("L@{azimuth_deg},{tilt_deg}"),
             Self::Ugr => "UGR".into(),
             Self::ColourRendering => "R_a".into(),
         }
@@ -153,11 +179,24 @@ mod tests {
 
     #[test]
     fn every_key_reads_back_and_nonsense_does_not() {
-        for text in ["E_h", "E_v@90", "E_n", "E_cyl", "E_semi@-45.5", "E_hemi", "E_sph", "modelling", "L@10,-30", "UGR"] {
+        for text in [
+            "E_h",
+            "E_v@90",
+            "E_n",
+            "E_cyl",
+            "E_semi@-45.5",
+            "E_hemi",
+            "E_sph",
+            "modelling",
+            "L@10,-30",
+            "UGR",
+        ] {
             let quantity = Quantity::parse(text).unwrap_or_else(|| panic!("{text} must parse"));
             assert_eq!(quantity.key(), text);
         }
-        for text in ["", "E", "E_v", "E_v@", "E_v@nan", "E_h@3", "L@1", "L@1,91", "e_h"] {
+        for text in [
+            "", "E", "E_v", "E_v@", "E_v@nan", "E_h@3", "L@1", "L@1,91", "e_h",
+        ] {
             assert!(Quantity::parse(text).is_none(), "{text} must be refused");
         }
     }

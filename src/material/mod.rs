@@ -1,7 +1,5 @@
 //! Surface materials. Both sides of a surface reflect alike; `reflectance` is the diffuse part.
 
-use glam::DVec3;
-
 /// A named material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -49,5 +47,18 @@ pub struct Pane {
     pub normal_transmittance: f64,
 }
 
-/// Unit direction.
-pub type Direction = DVec3;
+impl Bsdf {
+    /// Whether some incident light is absorbed, or leaves the scene, for every direction.
+    pub fn absorbs(&self) -> bool {
+        match *self {
+            Self::Lambert { reflectance }
+            | Self::Mirror { reflectance }
+            | Self::Emitter { reflectance, .. } => reflectance < 1.0,
+            Self::Opal {
+                reflectance,
+                transmittance,
+            } => reflectance + transmittance < 1.0,
+            Self::Glass(pane) => pane.normal_transmittance < 1.0,
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! The project file: schema, and its resolution into worlds ready to be planned. The only code
+//! that reads files. All mistakes of a file are reported in one run, each with line and hint.
+
+use glam::{DVec2, DVec3};
+
+use crate::grid::GridRule;
+use crate::norm::Standard;
+use crate::quantity::{Quantity, Statistic};
+use crate::scene::Scene;
+
+/// A resolved project.
+#[derive(Debug)]
+pub struct Project {
+    /// Names and dates for the report's head.
+    pub info: Info,
+    /// Independent worlds: one for the box or CAD file, and one for each footprint room.
+    pub worlds: Vec<World>,
+    /// Light scenes; never empty.
+    pub light_scenes: Vec<LightScene>,
+    /// The norm to judge by.
+    pub norm: Option<Norm>,
+    /// How exactly to solve.
+    pub accuracy: Accuracy,
+    /// What was ignored or approximated while loading.
+    pub biases: Vec<String>,
+    /// Input files in order of use.
+    pub inputs: Vec<InputFile>,
+}
+
+/// Head of the report.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Info {
+    /// Project name; names the default output folder too.
+    pub name: String,
+    /// Client, may be empty.
+    pub client: String,
+    /// Revision, may be empty.
+    pub revision: String,
+    /// Date as written by the user, may be empty (the clock is never read).
+    pub date: String,
+    /// Report languages, `en` and `ru`; never empty.
+    pub language: Vec<String>,
+}
+
+/// An input file and what it contained.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct InputFile {
+    /// As written in the project.
+    pub path: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// A scene with the rooms, areas and viewpoints in it.
+#[derive(Debug)]
+pub struct World {
+    /// Geometry, materials, luminaires.
+    pub scene: Scene,
+    /// Rooms in this world; never empty.
+    pub rooms: Vec<Room>,
+    /// Areas the user listed (the norm's own areas are added by `plan`).
+    pub areas: Vec<AreaSpec>,
+    /// Observers.
+    pub viewpoints: Vec<Viewpoint>,
+    /// Requirements of `[[require]]` that concern this world.
+    pub requirements: Vec<CustomRequirement>,
+}
+
+/// A room.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Room {
+    /// Name, unique in the project.
+    pub name: String,
+    /// Number on the plan, may be empty.
+    pub number: String,
+    /// Plan outline, counter-clockwise, m.
+    pub footprint: Vec<DVec2>,
+    /// Height of the finished floor, m.
+    pub floor_m: f64,
+    /// Clear height, m.
+    pub height_m: f64,
+    /// Row of the norm, if the project names one.
+    pub row: Option<String>,
+    /// Room surface maintenance factor.
+    pub rsmf: f64,
+    /// Mean reflectances of ceiling, walls, floor (area-weighted shell materials), for the UGR table.
+    pub reflectances: [f64; 3],
+    /// Surfaces (mesh indices) that are this room's walls, ceiling, floor; empty where unknown.
+    pub walls: Vec<u32>,
+    /// See `walls`.
+    pub ceiling: Vec<u32>,
+    /// See `walls`.
+    pub floor: Vec<u32>,
+    /// Luminaires (scene indices) that hang in this room.
+    pub luminaires: Vec<usize>,
+}
+
+/// What an area is in the sense of the norm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AreaKind {
+    /// Task area.
+    Task,
+    /// Immediate surrounding of a task area.
+    Surrounding,
+    /// Background area.
+    Background,
+    /// A surface of the room: wall, ceiling, board.
+    Surface,
+    /// Points of a space, for cylindrical illuminance.
+    Volume,
+}
+
+/// An area as the user wrote it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AreaSpec {
+    /// Name, unique in the project.
+    pub name: String,
+    /// Role.
+    pub kind: AreaKind,
+    /// For surroundings: index of the task area within the world's areas.
+    pub of: Option<usize>,
+    /// Index of its room within the world.
+    pub room: usize,
+    /// Row of the norm for this area; `None`: the room's, then the norm's default.
+    pub row: Option<String>,
+    /// Light scene by which it is judged; `None`: the first.
+    pub light_scene: Option<usize>,
+    /// Where it lies.
+    pub shape: AreaShape,
+    /// How points are laid.
+    pub rule: GridRule,
+    /// Border left out, m.
+    pub border_m: f64,
+    /// Quantities to report; empty: those of the norm for its kind, else E_h (E_n on surfaces).
+    pub quantities: Vec<Quantity>,
+}
+
+/// Where an area lies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AreaShape {
+    /// A rectangle with full edges `u` and `v`; its normal is u × v.
+    Rect {
+        /// Corner, m.
+        origin: DVec3,
+        /// Full edge, m.
+        u: DVec3,
+        /// Full edge, m.
+        v: DVec3,
+    },
+    /// A planar polygon; its normal is upward where it is horizontal, else by its corners' order.
+    Polygon(Vec<DVec3>),
+    /// The room's side of a planar named surface: its bounding rectangle and outline triangles.
+    Surface {
+        /// Mesh surface index.
+        surface: u32,
+        /// Bounding rectangle in the surface's plane; u × v points into the room.
+        origin: DVec3,
+        /// Full edge, m.
+        u: DVec3,
+        /// Full edge, m.
+        v: DVec3,
+    },
+    /// A free list of points with optional normals.
+    Points(Vec<(DVec3, Option<DVec3>)>),
+}
+
+/// An observer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// Name, unique in the project.
+    pub name: String,
+    /// Index of its room within the world.
+    pub room: usize,
+    /// Eye position, m.
+    pub eye: DVec3,
+    /// Unit lines of sight: one, or a sweep about the vertical.
+    pub directions: Vec<DVec3>,
+    /// Indices asked for; `UGR` only so far.
+    pub indices: Vec<Quantity>,
+    /// Light scene; `None`: the first.
+    pub light_scene: Option<usize>,
+}
+
+/// A light scene: factors of the groups, multiplied with each luminaire's `dim`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightScene {
+    /// Name, `all` when the project lists none.
+    pub name: String,
+    /// Factor of each group; `None`: every group at 1. A group that is not listed is off.
+    pub factors: Option<Vec<(String, f64)>>,
+}
+
+impl LightScene {
+    /// Factor of a group in this scene.
+    pub fn factor(&self, group: &str) -> f64 {
+        match &self.factors {
+            None => 1.0,
+            Some(factors) => factors
+                .iter()
+                .find(|(name, _)| name == group)
+                .map_or(0.0, |(_, factor)| *factor),
+        }
+    }
+}
+
+/// The norm and how it is applied.
+#[derive(Clone, Debug)]
+pub struct Norm {
+    /// Its rows.
+    pub standard: Standard,
+    /// Default row for rooms and areas.
+    pub row: Option<String>,
+    /// Exact or printed comparison.
+    pub compare: Compare,
+}
+
+/// How a value is compared with a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Compare {
+    /// Unrounded.
+    Exact,
+    /// Rounded half-up first: E to three significant figures, ratios to 0.01, UGR to 0.1.
+    Printed,
+}
+
+/// A requirement beyond or instead of the norm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CustomRequirement {
+    /// What it limits.
+    pub subject: CustomSubject,
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Statistic.
+    pub statistic: Statistic,
+    /// Lower limit.
+    pub min: Option<f64>,
+    /// Upper limit.
+    pub max: Option<f64>,
+    /// Light scene; `None`: the first.
+    pub light_scene: Option<usize>,
+}
+
+/// Subject of a [`CustomRequirement`], by index within the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CustomSubject {
+    /// A room.
+    Room(usize),
+    /// An area.
+    Area(usize),
+    /// A viewpoint.
+    Viewpoint(usize),
+}
+
+/// When to stop, and with which seed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Stopping goal.
+    pub goal: Goal,
+    /// Confidence of intervals, 0.95 by default.
+    pub confidence: f64,
+    /// Seed of all randomness.
+    pub seed: u64,
+}
+
+/// Stopping goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Until every verdict is certain (or the block limit).
+    Verdict,
+    /// Until the relative standard error is reached.
+    Relative(f64),
+    /// For this many seconds of wall time, at a block's end.
+    Seconds(f64),
+}

@@ -1,0 +1,156 @@
+//! A scene is one closed world of light: geometry, materials, luminaires and the tracer over them,
+//! validated once. It knows no norm, no observer and no file.
+
+use glam::DVec3;
+
+use crate::geometry::mesh::Mesh;
+use crate::geometry::trace::Tracer;
+use crate::luminaire::Luminaire;
+use crate::material::{Bsdf, Material};
+
+/// Everything light can meet.
+#[derive(Debug)]
+pub struct Scene {
+    /// The triangles; degenerate ones were dropped before.
+    pub mesh: Mesh,
+    /// Materials, referred to by the mesh's surfaces.
+    pub materials: Vec<Material>,
+    /// Placed luminaires.
+    pub luminaires: Vec<Luminaire>,
+    /// Channels in a fixed order; see [`Channel`].
+    pub channels: Vec<Channel>,
+    /// Channel of each luminaire.
+    pub channel_of: Vec<usize>,
+    /// Ray tracer over `mesh`.
+    pub tracer: Tracer,
+}
+
+/// The unit that is solved separately at initial flux: one luminaire group of one type, or one
+/// emitting material. Maintenance, dimming and light scenes are weights applied afterwards.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// All luminaires of `kind` in `group`.
+    Luminaires {
+        /// Control group.
+        group: String,
+        /// Name of the luminaire type.
+        kind: String,
+    },
+    /// All surfaces of an emitting material (index into the scene's materials).
+    Surfaces {
+        /// Index into [`Scene::materials`].
+        material: usize,
+    },
+}
+
+/// Why a scene cannot be solved.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// No triangle is left.
+    #[error("the scene has no triangles")]
+    NoTriangles,
+    /// A vertex is NaN or infinite.
+    #[error("vertex {index} of surface \"{surface}\" is not finite: {position}")]
+    NotFinite {
+        /// Vertex index.
+        index: usize,
+        /// Surface that uses it.
+        surface: String,
+        /// The position.
+        position: DVec3,
+    },
+    /// Light can never leave or be absorbed.
+    #[error(
+        "material \"{0}\" reflects all light (reflectance + transmittance = 1) and so does every other surface: a closed scene without absorption has no finite solution"
+    )]
+    NoAbsorption(String),
+    /// Too many triangles for 32-bit indices.
+    #[error("{0} triangles are more than the limit of 100 million")]
+    TooLarge(usize),
+}
+
+impl Scene {
+    /// Validates the parts and builds the tracer.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the first fault.
+    pub fn new(
+        mesh: Mesh,
+        materials: Vec<Material>,
+        luminaires: Vec<Luminaire>,
+    ) -> Result<Self, SceneError> {
+        validate(&mesh, &materials)?;
+        let mut channels: Vec<Channel> = Vec::new();
+        let mut channel_of = Vec::with_capacity(luminaires.len());
+        for luminaire in &luminaires {
+            let channel = Channel::Luminaires {
+                group: luminaire.group.clone(),
+                kind: luminaire.kind.name.clone(),
+            };
+            let index = channels
+                .iter()
+                .position(|known| *known == channel)
+                .unwrap_or_else(|| {
+                    channels.push(channel);
+                    channels.len() - 1
+                });
+            channel_of.push(index);
+        }
+        let used = |material: usize| {
+            mesh.triangles
+                .iter()
+                .any(|t| mesh.surfaces[t.surface as usize].material == material)
+        };
+        for (material, entry) in materials.iter().enumerate() {
+            if matches!(entry.bsdf, Bsdf::Emitter { .. }) && used(material) {
+                channels.push(Channel::Surfaces { material });
+            }
+        }
+        let tracer = Tracer::build(&mesh, &materials);
+        Ok(Self {
+            mesh,
+            materials,
+            luminaires,
+            channels,
+            channel_of,
+            tracer,
+        })
+    }
+
+    /// The scattering model of triangle `index`.
+    pub fn bsdf(&self, triangle: u32) -> &Bsdf {
+        let surface = self.mesh.triangles[triangle as usize].surface;
+        &self.materials[self.mesh.surfaces[surface as usize].material].bsdf
+    }
+}
+
+fn validate(mesh: &Mesh, materials: &[Material]) -> Result<(), SceneError> {
+    if mesh.triangles.is_empty() {
+        return Err(SceneError::NoTriangles);
+    }
+    if mesh.triangles.len() > 100_000_000 {
+        return Err(SceneError::TooLarge(mesh.triangles.len()));
+    }
+    for triangle in &mesh.triangles {
+        for vertex in triangle.vertices {
+            let position = mesh.positions[vertex as usize];
+            if !position.is_finite() {
+                let surface = mesh.surfaces[triangle.surface as usize].name.clone();
+                return Err(SceneError::NotFinite {
+                    index: vertex as usize,
+                    surface,
+                    position,
+                });
+            }
+        }
+    }
+    let mut lossless = None;
+    for surface in &mesh.surfaces {
+        let material = &materials[surface.material];
+        if material.bsdf.absorbs() {
+            return Ok(());
+        }
+        lossless = Some(material.name.clone());
+    }
+    lossless.map_or(Ok(()), |name| Err(SceneError::NoAbsorption(name)))
+}

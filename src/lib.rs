@@ -13,4 +13,5 @@ pub mod photometry;
 pub mod project;
 pub mod quantity;
 pub mod scene;
+pub mod sphere;
 pub mod units;

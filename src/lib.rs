@@ -3,6 +3,7 @@
 //! One line of data flow: project → plan → prepare → answer → measure → judge → report.
 //! `docs/architecture.md` is the map.
 
+pub mod estimate;
 pub mod geometry;
 pub mod grid;
 pub mod luminaire;
@@ -12,6 +13,8 @@ pub mod outcome;
 pub mod photometry;
 pub mod project;
 pub mod quantity;
+pub mod query;
+pub mod rng;
 pub mod scene;
 pub mod sphere;
 pub mod units;

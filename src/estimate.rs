@@ -1,0 +1,181 @@
+//! Estimates from independent blocks: mean, standard error, Student intervals, and Fieller's
+//! interval of a ratio. Points share rays within a block, so statistics are always of the
+//! *reported* quantity's block values, never combined from point errors.
+
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+/// Mean of independent block values with its standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// Mean over blocks.
+    pub value: f64,
+    /// Standard error of the mean.
+    pub se: f64,
+    /// Number of blocks.
+    pub n: usize,
+}
+
+impl Estimate {
+    /// From block values, summed in order. One block has no standard error: it is infinite.
+    pub fn from_blocks(blocks: &[f64]) -> Self {
+        let n = blocks.len();
+        let value = blocks.iter().sum::<f64>() / n as f64;
+        let squares: f64 = blocks.iter().map(|x| (x - value) * (x - value)).sum();
+        let se = if n > 1 {
+            (squares / ((n - 1) as f64 * n as f64)).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        Self { value, se, n }
+    }
+
+    /// A value that is known without error.
+    pub fn exact(value: f64, n: usize) -> Self {
+        Self { value, se: 0.0, n }
+    }
+
+    /// Two-sided Student interval that errs with probability `alpha`.
+    pub fn interval(&self, alpha: f64) -> (f64, f64) {
+        if !(self.se > 0.0) {
+            return (self.value, self.value);
+        }
+        let half = quantile(1.0 - 0.5 * alpha, self.n.saturating_sub(1)) * self.se;
+        (self.value - half, self.value + half)
+    }
+}
+
+/// Quantile of Student's t with `df` degrees of freedom at probability `p` > ½.
+pub fn quantile(p: f64, df: usize) -> f64 {
+    if df == 0 {
+        return f64::INFINITY;
+    }
+    // statrs' t falls below the normal quantile for very many degrees of freedom.
+    if df >= 5_000 {
+        let normal = Normal::new(0.0, 1.0).expect("unit normal");
+        // Second-order correction of the normal quantile: t ≈ z + (z³ + z)/(4 df).
+        let z = normal.inverse_cdf(p);
+        return z + (z * z * z + z) / (4.0 * df as f64);
+    }
+    StudentsT::new(0.0, 1.0, df as f64)
+        .expect("positive degrees of freedom")
+        .inverse_cdf(p)
+}
+
+/// Means of x and y over blocks with the (co)variances of the means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Mean of x.
+    pub x: f64,
+    /// Mean of y.
+    pub y: f64,
+    /// Variance of the mean of x.
+    pub var_x: f64,
+    /// Variance of the mean of y.
+    pub var_y: f64,
+    /// Covariance of the means.
+    pub cov: f64,
+    /// Number of blocks.
+    pub n: usize,
+}
+
+impl Pair {
+    /// From block values of x and y, equally many.
+    pub fn from_blocks(x: &[f64], y: &[f64]) -> Self {
+        let n = x.len();
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / n as f64;
+        let (mx, my) = (mean(x), mean(y));
+        let scale = if n > 1 {
+            1.0 / ((n - 1) as f64 * n as f64)
+        } else {
+            f64::INFINITY
+        };
+        let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
+        for (a, b) in x.iter().zip(y) {
+            xx += (a - mx) * (a - mx);
+            yy += (b - my) * (b - my);
+            xy += (a - mx) * (b - my);
+        }
+        Self {
+            x: mx,
+            y: my,
+            var_x: xx * scale,
+            var_y: yy * scale,
+            cov: xy * scale,
+            n,
+        }
+    }
+
+    /// x / y with the standard error of first order; exact zero error where the variances vanish.
+    pub fn ratio(&self) -> Estimate {
+        let ratio = self.x / self.y;
+        let variance = self.var_x - 2.0 * ratio * self.cov + ratio * ratio * self.var_y;
+        Estimate {
+            value: ratio,
+            se: variance.max(0.0).sqrt() / self.y.abs(),
+            n: self.n,
+        }
+    }
+
+    /// Fieller's interval of x / y: all u for which the contrast x − u·y does not differ from zero
+    /// at two-sided `alpha`. Unbounded (±∞) where y itself is not significantly above zero.
+    pub fn ratio_interval(&self, alpha: f64) -> (f64, f64) {
+        let t = quantile(1.0 - 0.5 * alpha, self.n.saturating_sub(1));
+        let t2 = t * t;
+        let a = self.y * self.y - t2 * self.var_y;
+        if !(a > 0.0) {
+            return (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        let b = self.x * self.y - t2 * self.cov;
+        let c = self.x * self.x - t2 * self.var_x;
+        let root = (b * b - a * c).max(0.0).sqrt();
+        ((b - root) / a, (b + root) / a)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn quantiles_match_tables_and_never_fall_below_the_normal_one() {
+        for (p, df, expected) in [
+            (0.975, 31, 2.0395),
+            (0.975, 1, 12.706),
+            (0.995, 63, 2.6561),
+            (0.9999, 63, 3.955),
+        ] {
+            assert!(
+                (quantile(p, df) - expected).abs() < 2e-3 * expected,
+                "t({p}, {df}) = {}",
+                quantile(p, df)
+            );
+        }
+        for df in [100, 4_999, 5_000, 1_000_000] {
+            assert!(quantile(0.975, df) > 1.959_963, "df {df}");
+        }
+    }
+
+    #[test]
+    fn intervals_cover_as_often_as_they_say() {
+        let (mut covered, mut ratio_covered, runs) = (0, 0, 2000);
+        for run in 0..runs {
+            let mut rng = Rng::new(5, run, 0);
+            let blocks: Vec<f64> = (0..32)
+                .map(|_| rng.uniform() + rng.uniform() * rng.uniform())
+                .collect();
+            let (lo, hi) = Estimate::from_blocks(&blocks).interval(0.05);
+            covered += usize::from(lo <= 0.75 && 0.75 <= hi);
+            let y: Vec<f64> = blocks
+                .iter()
+                .map(|b| 1.0 + 0.3 * b + 0.1 * rng.uniform())
+                .collect();
+            let (lo, hi) = Pair::from_blocks(&blocks, &y).ratio_interval(0.05);
+            let truth = 0.75 / (1.0 + 0.225 + 0.05);
+            ratio_covered += usize::from(lo <= truth && truth <= hi);
+        }
+        // 95 % of 2000 with 5 σ of the binomial: 1900 ± 49.
+        assert!((1851..=1949).contains(&covered), "{covered}");
+        assert!((1851..=1949).contains(&ratio_covered), "{ratio_covered}");
+    }
+}

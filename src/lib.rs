@@ -4,6 +4,8 @@
 //! `docs/architecture.md` is the map.
 
 pub mod estimate;
+pub mod emitters;
+pub mod field;
 pub mod geometry;
 pub mod grid;
 pub mod luminaire;
@@ -16,5 +18,6 @@ pub mod quantity;
 pub mod query;
 pub mod rng;
 pub mod scene;
+pub mod solve;
 pub mod sphere;
 pub mod units;

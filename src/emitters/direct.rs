@@ -1,0 +1,137 @@
+//! Unshadowed illuminance by a luminaire: Lambert's contour formula where it applies, error-controlled
+//! product Gauss quadrature over the opening elsewhere.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::{Emitters, Source};
+use crate::query::Kernel;
+
+/// Relative error below which the quadrature stops splitting.
+pub const TOLERANCE: f64 = 1e-5;
+const DEEPEST: u32 = 7;
+
+/// Two- and three-point Gauss–Legendre nodes and weights on [0, 1].
+const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_13, 0.5), (0.788_675_134_594_812_9, 0.5)];
+const GAUSS3: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// Illuminance in lx at `point` by `kernel` from a luminaire, as if nothing stood between.
+pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &Kernel) -> f64 {
+    let value = |u: [f64; 2]| {
+        let arrival = emitters.arrival(source, point, u);
+        arrival.normal_lx * kernel.response(arrival.direction)
+    };
+    if !(source.area_m2 > 0.0) {
+        return value([0.5, 0.5]);
+    }
+    let luminaire = emitters.luminaire(source);
+    if let (Some(flux_lm), Kernel::Planar { normal }) = (luminaire.kind.distribution.lambert_flux(), kernel) {
+        let corners = luminaire.kind.opening.polygon();
+        if !corners.is_empty() {
+            let beam = -source.world_from_luminaire.z_axis;
+            if beam.dot(point - source.position) <= 0.0 {
+                return 0.0;
+            }
+            let luminance = flux_lm * luminaire.dim / (PI * source.area_m2);
+            let corners: Vec<DVec3> =
+                corners.iter().map(|&p| source.position + source.world_from_luminaire * p - point).collect();
+            return luminance * contour(&corners, *normal);
+        }
+    }
+    let whole = product(&GAUSS3, [0.0, 0.0], 1.0, &value);
+    // Far from the opening two and three nodes agree at once.
+    adaptive([0.0, 0.0], 1.0, whole, (whole * TOLERANCE).max(1e-12), 0, &value)
+}
+
+/// ∫ over a square of the unit square, split until the two rules agree to `tolerance`.
+fn adaptive(
+    corner: [f64; 2],
+    edge: f64,
+    fine: f64,
+    tolerance: f64,
+    depth: u32,
+    value: &impl Fn([f64; 2]) -> f64,
+) -> f64 {
+    let coarse = product(&GAUSS2, corner, edge, value);
+    if (fine - coarse).abs() <= tolerance || depth == DEEPEST {
+        return fine;
+    }
+    let half = 0.5 * edge;
+    let quarters = [[0.0, 0.0], [half, 0.0], [0.0, half], [half, half]]
+        .map(|shift| [corner[0] + shift[0], corner[1] + shift[1]])
+        .map(|corner| (corner, product(&GAUSS3, corner, half, value)));
+    quarters.iter().map(|&(corner, fine)| adaptive(corner, half, fine, 0.5 * tolerance, depth + 1, value)).sum()
+}
+
+fn product(rule: &[(f64, f64)], corner: [f64; 2], edge: f64, value: &impl Fn([f64; 2]) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for (x, wx) in rule {
+        for (y, wy) in rule {
+            sum += wx * wy * value([corner[0] + edge * x, corner[1] + edge * y]);
+        }
+    }
+    sum * edge * edge
+}
+
+/// Lambert's formula: E/L = ½ |Σ Γ_i · n| of a polygon seen from the origin on a plane with unit
+/// `normal`, the polygon clipped at the horizon first. In sr·cos: E = L × this.
+pub fn contour(corners: &[DVec3], normal: DVec3) -> f64 {
+    let clipped = clip(corners, normal);
+    let mut sum = 0.0;
+    for (index, &a) in clipped.iter().enumerate() {
+        let b = clipped[(index + 1) % clipped.len()];
+        let cross = a.cross(b);
+        let length = cross.length();
+        if length > 0.0 {
+            sum += length.atan2(a.dot(b)) / length * cross.dot(normal);
+        }
+    }
+    0.5 * sum.abs()
+}
+
+/// The part of a polygon above the horizon n · p ≥ 0 (Sutherland–Hodgman).
+fn clip(corners: &[DVec3], normal: DVec3) -> Vec<DVec3> {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (index, &a) in corners.iter().enumerate() {
+        let b = corners[(index + 1) % corners.len()];
+        let (ha, hb) = (a.dot(normal), b.dot(normal));
+        if ha >= 0.0 {
+            kept.push(a);
+        }
+        if (ha > 0.0 && hb < 0.0) || (ha < 0.0 && hb > 0.0) {
+            kept.push(a + (b - a) * (ha / (ha - hb)));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rectangle(u: f64, v: f64, height: f64, shift: DVec3) -> Vec<DVec3> {
+        [[0.0, 0.0], [u, 0.0], [u, v], [0.0, v]].map(|[x, y]| DVec3::new(x, y, height) + shift).to_vec()
+    }
+
+    #[test]
+    fn contour_gives_the_tabled_form_factors() {
+        // Parallel and perpendicular rectangle over a corner point, E = π L F (closed forms).
+        let f = |corners: &[DVec3], normal| contour(corners, normal) / PI;
+        assert!((f(&rectangle(1.0, 1.0, 1.0, DVec3::ZERO), DVec3::Z) - 0.138_531_605_995).abs() < 1e-11);
+        assert!((f(&rectangle(2.0, 1.0, 3.0, DVec3::ZERO), DVec3::Z) - 0.052_267_808_794).abs() < 1e-11);
+        let upright = |a: f64, b: f64, c: f64| {
+            [[0.0, 0.0], [b, 0.0], [b, a], [0.0, a]].map(|[y, z]| DVec3::new(c, y, z)).to_vec()
+        };
+        assert!((f(&upright(1.0, 1.0, 1.0), DVec3::Z) - 0.055_734_197_003).abs() < 1e-11);
+        assert!((f(&upright(1.0, 1.0, 1e-9), DVec3::Z) - 0.249_999_999_716).abs() < 1e-9);
+    }
+
+    #[test]
+    fn contour_clips_at_the_horizon() {
+        let wall = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[y, z]| DVec3::new(1.0, y, z));
+        assert!((contour(&wall, DVec3::Z) - 0.350_188_287_714).abs() < 1e-11);
+        assert!(contour(&wall, DVec3::NEG_X).abs() < 1e-15, "a source behind the plane gives nothing");
+    }
+}

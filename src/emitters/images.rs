@@ -1,0 +1,83 @@
+//! Planar specular surfaces and the images of luminaires in them. Light that is reflected exactly
+//! once by such a plane is owned by its image; more reflections are found by following rays.
+
+use glam::{DMat3, DVec3};
+
+use crate::scene::Scene;
+
+/// At most this many planes get images; light reflected by others is found by rays that happen to
+/// hit an opening (right, but noisier, and lost for point sources: `solve` lists it).
+const MOST_PLANES: usize = 12;
+
+/// Triangles of specular material in one plane.
+#[derive(Clone, Debug)]
+pub struct Mirror {
+    /// Unit normal of the plane.
+    pub normal: DVec3,
+    /// normal · point for points of the plane, m.
+    pub offset_m: f64,
+    /// Triangles in the plane.
+    pub triangles: Vec<u32>,
+}
+
+impl Mirror {
+    /// The image of a point.
+    pub fn image(&self, point: DVec3) -> DVec3 {
+        point - 2.0 * (point.dot(self.normal) - self.offset_m) * self.normal
+    }
+
+    /// The linear part of the reflection, I − 2 n nᵀ.
+    pub fn reflection(&self) -> DMat3 {
+        let n = self.normal;
+        DMat3::IDENTITY - DMat3::from_cols(n * n.x, n * n.y, n * n.z) * 2.0
+    }
+
+    /// Where the ray meets the plane inside one of its triangles, before `reach_m`.
+    pub fn meet(&self, scene: &Scene, origin: DVec3, direction: DVec3, reach_m: f64) -> Option<(f64, u32)> {
+        let distance_m = (self.offset_m - origin.dot(self.normal)) / direction.dot(self.normal);
+        if !(distance_m > 0.0 && distance_m < reach_m) {
+            return None;
+        }
+        let at = origin + direction * distance_m;
+        let inside = |triangle: u32| {
+            let [a, b, c] = scene.mesh.corners(triangle as usize);
+            let side = |p: DVec3, q: DVec3| (q - p).cross(at - p).dot(self.normal);
+            let (u, v, w) = (side(a, b), side(b, c), side(c, a));
+            (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0)
+        };
+        self.triangles.iter().copied().find(|&t| inside(t)).map(|t| (distance_m, t))
+    }
+}
+
+/// Specular planes by size, the largest [`MOST_PLANES`], and for each triangle whether it is in one.
+pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
+    let mesh = &scene.mesh;
+    let size_m = mesh.bounds().map_or(1.0, |(lo, hi)| (hi - lo).length());
+    let mut found: Vec<(Mirror, f64)> = Vec::new();
+    for triangle in 0..mesh.triangles.len() as u32 {
+        if scene.bsdf(triangle).specular(1.0).is_none() {
+            continue;
+        }
+        let (normal, area_m2) = mesh.normal_and_area(triangle as usize);
+        let offset_m = normal.dot(mesh.corners(triangle as usize)[0]);
+        let same = found.iter_mut().find(|(mirror, _)| {
+            let sign = mirror.normal.dot(normal).signum();
+            mirror.normal.dot(normal).abs() > 1.0 - 1e-12 && (offset_m * sign - mirror.offset_m).abs() < 1e-9 * size_m
+        });
+        match same {
+            Some((mirror, total)) => {
+                mirror.triangles.push(triangle);
+                *total += area_m2;
+            }
+            None if found.len() < 4096 => found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2)),
+            None => {}
+        }
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    found.truncate(MOST_PLANES);
+    let mut imaged = vec![false; mesh.triangles.len()];
+    for triangle in found.iter().flat_map(|(mirror, _)| &mirror.triangles) {
+        imaged[*triangle as usize] = true;
+    }
+    (found.into_iter().map(|(mirror, _)| mirror).collect(), imaged)
+}

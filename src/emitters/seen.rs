@@ -1,0 +1,95 @@
+//! How an eye sees a luminaire: visible solid angle, mean luminance of the visible part, fraction.
+
+use glam::DVec3;
+
+use super::{Emitters, Source};
+use crate::estimate::Estimate;
+use crate::rng::{Rng, Stratified};
+
+/// Replicates from which the errors of visible quantities are taken.
+const REPLICATES: usize = 16;
+/// Points of the opening in each replicate.
+const POINTS: u32 = 32;
+
+/// A luminaire (or its image) as seen from one point, channel at initial flux and full factor.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// Index into [`Emitters::sources`].
+    pub source: usize,
+    /// Unit direction from the eye to the centre of the opening.
+    pub direction: DVec3,
+    /// Distance to the centre, m.
+    pub distance_m: f64,
+    /// Solid angle of the visible part, ∫ A_p/A · V/d² dA, sr; 0 for point sources.
+    pub solid_angle_sr: Estimate,
+    /// ∫ L dω over the visible part, lx on a plane facing the source: I/d² of what is visible.
+    pub normal_lx: Estimate,
+    /// Visible share of the unobstructed solid angle (for points: of the light).
+    pub visible_fraction: f64,
+    /// Projected area of the whole opening towards the eye, m².
+    pub projected_area_m2: f64,
+}
+
+impl Seen {
+    /// ω-weighted mean luminance of the visible part, cd/m²; `None` for a point source.
+    pub fn luminance_cd_m2(&self) -> Option<f64> {
+        (self.solid_angle_sr.value > 0.0).then(|| self.normal_lx.value / self.solid_angle_sr.value)
+    }
+}
+
+/// All sources of which anything is visible from `eye`, within the half-space of nothing: the
+/// caller knows the gaze. Draws from `seed` only, so it repeats exactly.
+pub fn seen_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Seen> {
+    (0..emitters.sources.len()).filter_map(|index| seen(emitters, index, eye, seed)).collect()
+}
+
+fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen> {
+    let source = &emitters.sources[index];
+    let centre = emitters.arrival(source, eye, [0.5, 0.5]);
+    let mut rng = Rng::new(seed, u64::MAX, index as u64);
+    let mut solid = Vec::with_capacity(REPLICATES);
+    let mut light = Vec::with_capacity(REPLICATES);
+    let mut whole = 0.0;
+    let mut passed_sum = 0.0;
+    let points = if source.area_m2 > 0.0 { POINTS } else { 1 };
+    for _ in 0..REPLICATES {
+        let sequence = Stratified::new(&mut rng);
+        let (mut solid_sr, mut normal_lx) = (0.0, 0.0);
+        for point in 0..points {
+            let u = if points == 1 { [0.5, 0.5] } else { sequence.point(point, &mut rng) };
+            let arrival = emitters.arrival(source, eye, u);
+            let element_sr = projected_area(emitters, source, arrival.direction) / (arrival.distance_m * arrival.distance_m);
+            whole += element_sr;
+            if !(arrival.normal_lx > 0.0) {
+                continue;
+            }
+            let passed = emitters.passed(source, eye, &arrival);
+            passed_sum += passed;
+            // Behind a pane or in a mirror the source keeps its solid angle and loses luminance.
+            solid_sr += if passed > 0.0 { element_sr } else { 0.0 };
+            normal_lx += arrival.normal_lx * passed;
+        }
+        solid.push(solid_sr / f64::from(points));
+        light.push(normal_lx / f64::from(points));
+    }
+    if !(passed_sum > 0.0) {
+        return None;
+    }
+    let solid_angle_sr = Estimate::from_blocks(&solid);
+    let whole_sr = whole / (REPLICATES as f64 * f64::from(points));
+    Some(Seen {
+        source: index,
+        direction: centre.direction,
+        distance_m: centre.distance_m,
+        visible_fraction: if whole_sr > 0.0 { solid_angle_sr.value / whole_sr } else { 1.0 },
+        solid_angle_sr,
+        normal_lx: Estimate::from_blocks(&light),
+        projected_area_m2: projected_area(emitters, source, centre.direction),
+    })
+}
+
+/// Projected area in m² towards the eye that looks along `direction`.
+fn projected_area(emitters: &Emitters, source: &Source, direction: DVec3) -> f64 {
+    let leaving = source.world_from_luminaire.transpose() * -direction;
+    emitters.luminaire(source).kind.opening.projected_area_m2(leaving)
+}

@@ -1,0 +1,146 @@
+//! Following a ray to the first diffuse surface through mirrors and panes, the light of luminaires
+//! met on the way, and direct light at a diffuse vertex.
+
+use glam::DVec3;
+
+use super::Counts;
+use crate::emitters::Emitters;
+use crate::rng::Rng;
+use crate::scene::{Channel, Scene};
+
+/// Specular bounces after which a walk is cut and counted: only a cage of perfect mirrors gets here.
+const MOST_BOUNCES: u32 = 10_000;
+
+/// A diffuse place that a ray arrived at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing {
+    /// Position on the surface, m.
+    pub point: DVec3,
+    /// Unit normal on the side of arrival.
+    pub normal: DVec3,
+    /// Triangle.
+    pub triangle: u32,
+    /// Barycentric weights.
+    pub barycentric: [f64; 2],
+    /// Whether the triangle's front was met.
+    pub front: bool,
+}
+
+impl Landing {
+    /// Origin of rays that leave on the side of arrival (`same_side`) or the other.
+    pub fn origin(&self, scene: &Scene, same_side: bool) -> DVec3 {
+        let lift = scene.tracer.offset_m();
+        self.point + self.normal * if same_side { lift } else { -lift }
+    }
+}
+
+/// Follows specular surfaces to a diffuse one. Reflection or transmission is drawn at random and
+/// absorption is analog, so a landing always has weight 1; `None` is light that is lost or absent.
+/// Openings met after specular reflections that no image covers add their luminance to `met`
+/// (cd/m² per channel): next-event estimation owns all others.
+pub(super) fn follow(
+    emitters: &Emitters,
+    origin: DVec3,
+    direction: DVec3,
+    rng: &mut Rng,
+    counts: &mut Counts,
+    met: &mut [f64],
+) -> Option<Landing> {
+    let scene = emitters.scene;
+    let (mut origin, mut direction) = (origin, direction);
+    let mut reflections = 0;
+    let mut owned = true;
+    for _ in 0..MOST_BOUNCES {
+        counts.rays += 1;
+        let hit = scene.tracer.closest(origin, direction, &[]);
+        if !owned {
+            add_openings(emitters, origin, direction, hit.map_or(f64::INFINITY, |hit| hit.distance_m), met);
+        }
+        let Some(hit) = hit else {
+            counts.escaped += 1;
+            return None;
+        };
+        let point = origin + direction * hit.distance_m;
+        let front = scene.tracer.normal(hit.triangle);
+        let normal = if hit.front { front } else { -front };
+        let cos = -direction.dot(normal);
+        let Some((reflected, passed)) = scene.bsdf(hit.triangle).specular(cos) else {
+            return Some(Landing { point, normal, triangle: hit.triangle, barycentric: hit.barycentric, front: hit.front });
+        };
+        let choice = rng.uniform();
+        let lift = scene.tracer.offset_m();
+        if choice < reflected {
+            direction += 2.0 * cos * normal;
+            origin = point + normal * lift;
+            reflections += 1;
+            owned = reflections == 1 && emitters.imaged[hit.triangle as usize];
+        } else if choice < reflected + passed {
+            origin = point - normal * lift;
+        } else {
+            return None;
+        }
+    }
+    counts.cut += 1;
+    None
+}
+
+/// Adds the luminance of every opening along a ray before `reach_m`.
+fn add_openings(emitters: &Emitters, origin: DVec3, direction: DVec3, reach_m: f64, met: &mut [f64]) {
+    for luminaire in 0..emitters.scene.luminaires.len() {
+        if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
+            && distance_m < reach_m
+        {
+            met[emitters.scene.channel_of[luminaire]] += luminance;
+        }
+    }
+}
+
+/// Adds the luminance of an emitting surface to its channel.
+pub(super) fn add_emission(scene: &Scene, triangle: u32, channels: &mut [f64], factor: f64) {
+    let emitted = scene.bsdf(triangle).emitted();
+    if emitted > 0.0 {
+        let surface = scene.mesh.triangles[triangle as usize].surface as usize;
+        let own = Channel::Surfaces { material: scene.mesh.surfaces[surface].material };
+        if let Some(channel) = scene.channels.iter().position(|channel| *channel == own) {
+            channels[channel] += emitted * factor;
+        }
+    }
+}
+
+/// Adds one sample of the luminance that direct light makes at a diffuse vertex, cd/m² per channel.
+/// Every source is considered; those that can add little are traced with a probability and weighted.
+pub(super) fn add_direct(
+    emitters: &Emitters,
+    landing: &Landing,
+    shadow_rays: f64,
+    rng: &mut Rng,
+    scratch: &mut Vec<(usize, f64, crate::emitters::Arrival, bool)>,
+    channels: &mut [f64],
+) {
+    let scene = emitters.scene;
+    let (reflectance, transmittance) = scene.bsdf(landing.triangle).diffuse();
+    if !(reflectance + transmittance > 0.0) {
+        return;
+    }
+    scratch.clear();
+    let mut total = 0.0;
+    for (index, source) in emitters.sources.iter().enumerate() {
+        let arrival = emitters.arrival(source, landing.point, rng.uniforms());
+        let cos = landing.normal.dot(arrival.direction);
+        let albedo = if cos > 0.0 { reflectance } else { transmittance };
+        let luminance = arrival.normal_lx * cos.abs() * albedo * std::f64::consts::FRAC_1_PI;
+        if luminance > 0.0 && luminance.is_finite() {
+            total += luminance;
+            scratch.push((index, luminance, arrival, cos > 0.0));
+        }
+    }
+    for (index, luminance, arrival, same_side) in scratch.iter() {
+        let chance = (shadow_rays * luminance / total).min(1.0);
+        if chance < 1.0 && rng.uniform() >= chance {
+            continue;
+        }
+        let source = &emitters.sources[*index];
+        let passed = emitters.passed(source, landing.origin(scene, *same_side), arrival);
+        channels[source.channel] += luminance * passed / chance;
+    }
+}

@@ -1,0 +1,203 @@
+//! The solver: `prepare` builds the frozen field once, `answer` gives one independent, unbiased
+//! replicate of everything a [`Demand`] asks. It knows no norm, no observer and no report.
+
+mod answer;
+mod flux;
+mod look;
+mod path;
+mod prepare;
+
+use glam::DVec3;
+
+use crate::emitters::{Emitters, unshadowed};
+use crate::field::LuminanceField;
+use crate::query::Demand;
+use crate::scene::Scene;
+
+/// Number of parts in which a sheet keeps every answer.
+pub const PARTS: usize = 3;
+
+/// Parts of an answer; their sum is the whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Part {
+    /// Straight from luminaires, panes on the way included.
+    Direct = 0,
+    /// From luminaires by one reflection in a planar mirror or pane (their images).
+    Image = 1,
+    /// All other light.
+    Indirect = 2,
+}
+
+/// How answers are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Frozen field, gather rays and residual walks (METHOD of this project: links).
+    Links,
+    /// Independent path tracing; shares only scene and tracer with `Links`.
+    Path,
+}
+
+/// Effort of one block; any values give unbiased answers, they trade noise against time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Patch area of the field, m²; `None`: chosen from the scene's surface area.
+    pub patch_m2: Option<f64>,
+    /// Transport links per patch side.
+    pub links: u32,
+    /// Gather rays per receiver and block.
+    pub gather: u32,
+    /// Residual walks per receiver and block, ≤ `gather`.
+    pub walks: u32,
+    /// Shadow rays that a residual vertex spends on average at most.
+    pub shadow_rays: f64,
+    /// Points of each opening tested for visibility per receiver and block.
+    pub opening_points: u32,
+    /// Particles of the flux tally per block.
+    pub particles: u32,
+    /// Paths per receiver and block of the path tracer.
+    pub paths: u32,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self {
+            patch_m2: None,
+            links: 64,
+            gather: 16,
+            walks: 4,
+            shadow_rays: 6.0,
+            opening_points: 1,
+            particles: 1024,
+            paths: 16,
+        }
+    }
+}
+
+/// What is computed once for a scene and a demand, then frozen.
+pub struct Prepared<'s> {
+    scene: &'s Scene,
+    emitters: Emitters<'s>,
+    demand: &'s Demand,
+    effort: Effort,
+    method: Method,
+    seed: u64,
+    /// The stored field; empty for the path tracer.
+    field: Option<LuminanceField>,
+    /// Per row and source: unshadowed illuminance, lx.
+    unshadowed: Vec<Vec<f64>>,
+    /// First row of each receiver.
+    first_rows: Vec<usize>,
+}
+
+/// One replicate of every answer.
+#[derive(Clone, Debug, Default)]
+pub struct Sheet {
+    /// `[(row · channels + channel) · PARTS + part]`.
+    pub values: Vec<f64>,
+    /// Flux tally, if asked for.
+    pub flux: Option<FluxSheet>,
+    /// Counts of this block.
+    pub counts: Counts,
+}
+
+/// Flux tally of one block, lm at initial flux.
+#[derive(Clone, Debug, Default)]
+pub struct FluxSheet {
+    /// Incident on each surface (both sides): `[surface · channels + channel]`.
+    pub incident: Vec<f64>,
+    /// Absorbed by each surface, same layout.
+    pub absorbed: Vec<f64>,
+    /// Left the scene, per channel.
+    pub escaped: Vec<f64>,
+    /// Started from luminaires and emitting surfaces, per channel.
+    pub emitted: Vec<f64>,
+    /// From *point* sources to diffuse surfaces by specular reflection that no image covers: what the
+    /// other answers omit, per channel.
+    pub omitted: Vec<f64>,
+}
+
+/// Ray counts of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Closest-hit rays.
+    pub rays: u64,
+    /// Rays that left the scene.
+    pub escaped: u64,
+    /// Walks cut because light cannot leave a purely specular cage.
+    pub cut: u64,
+}
+
+impl Counts {
+    /// Adds another block's counts.
+    pub fn add(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.escaped += other.escaped;
+        self.cut += other.cut;
+    }
+}
+
+impl std::fmt::Debug for Prepared<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Prepared({:?}, {} rows)", self.method, self.demand.rows())
+    }
+}
+
+/// Prepares a scene for a demand; draws from stream 0 of `seed`.
+pub fn prepare<'s>(scene: &'s Scene, demand: &'s Demand, method: Method, effort: Effort, seed: u64) -> Prepared<'s> {
+    let emitters = Emitters::new(scene);
+    let field = match method {
+        Method::Links => Some(prepare::field(&emitters, &effort, seed)),
+        Method::Path => None,
+    };
+    let unshadowed = match method {
+        Method::Links => unshadowed_rows(&emitters, demand),
+        Method::Path => Vec::new(),
+    };
+    Prepared { scene, emitters, demand, effort, method, seed, field, unshadowed, first_rows: demand.first_rows() }
+}
+
+/// Block `block` (0-based) of the answers: draws from stream `block + 1` of the seed.
+pub fn answer(prepared: &Prepared, block: u64) -> Sheet {
+    let mut sheet = match prepared.method {
+        Method::Links => answer::block(prepared, block + 1),
+        Method::Path => path::block(prepared, block + 1),
+    };
+    if prepared.demand.flux {
+        sheet.flux = Some(flux::block(prepared, block + 1, &mut sheet.counts));
+    }
+    sheet
+}
+
+impl Prepared<'_> {
+    /// The emitters, for what an observer sees.
+    pub fn emitters(&self) -> &Emitters<'_> {
+        &self.emitters
+    }
+
+    /// Number of stored patches, for the result's record.
+    pub fn patches(&self) -> usize {
+        self.field.as_ref().map_or(0, |field| field.patches().len())
+    }
+}
+
+/// Unshadowed illuminance of every kernel row from every luminaire (images excluded).
+fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
+    use rayon::prelude::*;
+    demand
+        .receivers
+        .par_iter()
+        .flat_map_iter(|receiver| {
+            let point = lifted(emitters.scene, receiver.point, receiver.lift);
+            receiver.kernels.iter().map(move |kernel| {
+                let own = &emitters.sources[..emitters.scene.luminaires.len()];
+                own.iter().map(|source| unshadowed(emitters, source, point, kernel)).collect()
+            })
+        })
+        .collect()
+}
+
+/// The point moved off a surface it may lie on.
+fn lifted(scene: &Scene, point: DVec3, lift: DVec3) -> DVec3 {
+    point + lift * scene.tracer.offset_m()
+}

@@ -1,0 +1,165 @@
+//! An independent check: plain path tracing from every receiver with next-event estimation of one
+//! luminaire at random, Russian roulette, and no stored field, no images, no splitting. It shares
+//! scene, tracer and response kernels with the links method and nothing else.
+
+use glam::DVec3;
+
+use super::{Counts, PARTS, Part, Prepared, Sheet, lifted};
+use crate::query::{Kernel, Ray};
+use crate::rng::Rng;
+use crate::scene::{Channel, Scene};
+use crate::sphere;
+
+/// Block `stream` of a `Path` solution.
+pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
+    let (scene, demand) = (prepared.scene, prepared.demand);
+    let channels = scene.channels.len();
+    let paths = prepared.effort.paths;
+    let mut values = vec![0.0; demand.rows() * channels * PARTS];
+    let mut counts = Counts::default();
+    let mut row = 0;
+    // Items of this stream are disjoint from those of the links method: the two stay independent.
+    let item = |index: usize| (1 << 40) + index as u64;
+    for (index, receiver) in demand.receivers.iter().enumerate() {
+        let mut rng = Rng::new(prepared.seed, stream, item(index));
+        let origin = lifted(scene, receiver.point, receiver.lift);
+        for kernel in &receiver.kernels {
+            let out = &mut values[row * channels * PARTS..(row + 1) * channels * PARTS];
+            for _ in 0..paths {
+                lamp_light(scene, origin, kernel, 1.0 / f64::from(paths), &mut rng, out);
+                let direction = kernel.sample(rng.uniforms());
+                let density = kernel.pdf(direction);
+                if density > 0.0 {
+                    let weight = kernel.response(direction) / density / f64::from(paths);
+                    trace(scene, origin, direction, weight, false, &mut rng, &mut counts, out);
+                }
+            }
+            row += 1;
+        }
+    }
+    for (index, Ray { point, direction }) in demand.rays.iter().enumerate() {
+        let mut rng = Rng::new(prepared.seed, stream, item(demand.receivers.len() + index));
+        let out = &mut values[row * channels * PARTS..(row + 1) * channels * PARTS];
+        for _ in 0..paths {
+            trace(scene, *point, *direction, 1.0 / f64::from(paths), true, &mut rng, &mut counts, out);
+        }
+        row += 1;
+    }
+    Sheet { values, flux: None, counts }
+}
+
+/// One luminaire at random, one point of its opening, straight or through panes.
+fn lamp_light(scene: &Scene, at: DVec3, kernel: &Kernel, weight: f64, rng: &mut Rng, out: &mut [f64]) {
+    if let Some((lx, direction, channel)) = one_lamp(scene, at, rng, |_| at) {
+        out[channel * PARTS + Part::Direct as usize] += lx * kernel.response(direction) * weight;
+    }
+}
+
+/// Normal illuminance from a random luminaire (times their number), its direction and channel.
+fn one_lamp(scene: &Scene, at: DVec3, rng: &mut Rng, origin: impl Fn(DVec3) -> DVec3) -> Option<(f64, DVec3, usize)> {
+    let count = scene.luminaires.len();
+    if count == 0 {
+        return None;
+    }
+    let chosen = ((rng.uniform() * count as f64) as usize).min(count - 1);
+    let lamp = &scene.luminaires[chosen];
+    let from = lamp.position + lamp.world_from_luminaire * lamp.kind.opening.point(rng.uniforms());
+    let distance_m = from.distance(at);
+    let direction = (from - at) / distance_m;
+    let local = lamp.world_from_luminaire.transpose() * -direction;
+    let intensity_cd = lamp.kind.distribution.intensity_along(local) * lamp.dim;
+    if !(intensity_cd > 0.0 && distance_m > 0.0) {
+        return None;
+    }
+    let reach = distance_m - scene.tracer.offset_m();
+    let passed = scene.tracer.transmittance(origin(direction), direction, reach, &lamp.body);
+    let lx = intensity_cd / (distance_m * distance_m) * passed * count as f64;
+    Some((lx, direction, scene.channel_of[chosen]))
+}
+
+/// Follows one path. `sees_lamps`: the ray comes from an eye or a reflection, so openings count.
+#[allow(clippy::too_many_arguments, reason = "one path has this much state; a struct would only rename it")]
+fn trace(
+    scene: &Scene,
+    origin: DVec3,
+    direction: DVec3,
+    weight: f64,
+    sees_lamps: bool,
+    rng: &mut Rng,
+    counts: &mut Counts,
+    out: &mut [f64],
+) {
+    let (mut origin, mut direction, mut weight, mut sees_lamps) = (origin, direction, weight, sees_lamps);
+    let mut reflected_once = false;
+    let mut diffuse_seen = false;
+    for _ in 0..100_000 {
+        counts.rays += 1;
+        let hit = scene.tracer.closest(origin, direction, &[]);
+        if sees_lamps {
+            let reach = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
+            let part = match (diffuse_seen, reflected_once) {
+                (false, false) => Part::Direct,
+                (false, true) => Part::Image,
+                (true, _) => Part::Indirect,
+            };
+            add_lamps(scene, origin, direction, reach, weight, part, out);
+        }
+        let Some(hit) = hit else {
+            counts.escaped += 1;
+            return;
+        };
+        let face = scene.tracer.normal(hit.triangle);
+        let normal = if hit.front { face } else { -face };
+        let point = origin + direction * hit.distance_m;
+        let lift = scene.tracer.offset_m();
+        let bsdf = scene.bsdf(hit.triangle);
+        add_glow(scene, hit.triangle, weight, out);
+        let frame = sphere::frame(normal);
+        let Some(next) = bsdf.sample(frame.transpose() * -direction, rng.uniforms()) else { return };
+        if !next.specular {
+            diffuse_seen = true;
+            let side = |towards: DVec3| point + normal * lift * towards.dot(normal).signum();
+            if let Some((lx, towards, channel)) = one_lamp(scene, point, rng, side) {
+                let local = frame.transpose() * towards;
+                let value = bsdf.f(local, DVec3::Z) * local.z.abs() * lx * weight;
+                out[channel * PARTS + Part::Indirect as usize] += value;
+            }
+            sees_lamps = false;
+        } else if next.direction.z > 0.0 {
+            sees_lamps = true;
+            reflected_once = true;
+        }
+        let survival = next.weight.min(1.0);
+        if rng.uniform() >= survival {
+            return;
+        }
+        weight *= next.weight / survival;
+        direction = frame * next.direction;
+        origin = point + normal * if next.direction.z > 0.0 { lift } else { -lift };
+    }
+    counts.cut += 1;
+}
+
+fn add_lamps(scene: &Scene, origin: DVec3, direction: DVec3, reach: f64, weight: f64, part: Part, out: &mut [f64]) {
+    for (index, lamp) in scene.luminaires.iter().enumerate() {
+        let area_m2 = lamp.kind.opening.area_m2();
+        let into = lamp.world_from_luminaire.transpose();
+        let (o, d) = (into * (origin - lamp.position), into * direction);
+        let t = -o.z / d.z;
+        if area_m2 > 0.0 && t > 0.0 && t < reach && lamp.kind.opening.contains(o + d * t) {
+            let intensity_cd = lamp.kind.distribution.intensity_along(-d) * lamp.dim;
+            out[scene.channel_of[index] * PARTS + part as usize] += weight * intensity_cd / (area_m2 * d.z.abs());
+        }
+    }
+}
+
+fn add_glow(scene: &Scene, triangle: u32, weight: f64, out: &mut [f64]) {
+    let emitted = scene.bsdf(triangle).emitted();
+    if emitted > 0.0 {
+        let surface = scene.mesh.triangles[triangle as usize].surface as usize;
+        let own = Channel::Surfaces { material: scene.mesh.surfaces[surface].material };
+        if let Some(channel) = scene.channels.iter().position(|channel| *channel == own) {
+            out[channel * PARTS + Part::Indirect as usize] += emitted * weight;
+        }
+    }
+}

@@ -4,9 +4,11 @@
 //! `docs/architecture.md` is the map.
 
 pub mod geometry;
+pub mod glare;
 pub mod grid;
 pub mod luminaire;
 pub mod material;
+pub mod norm;
 pub mod photometry;
 pub mod quantity;
 pub mod units;

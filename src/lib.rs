@@ -3,10 +3,11 @@
 //! One line of data flow: project → plan → prepare → answer → measure → judge → report.
 //! `docs/architecture.md` is the map.
 
-pub mod estimate;
 pub mod emitters;
+pub mod estimate;
 pub mod field;
 pub mod geometry;
+pub mod glare;
 pub mod grid;
 pub mod luminaire;
 pub mod material;

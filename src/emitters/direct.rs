@@ -28,8 +28,8 @@ pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
     }
     let luminaire = emitters.luminaire(source);
     if let (Some(flux_lm), Kernel::Planar { normal }) = (luminaire.kind.distribution.lambert_flux(), kernel) {
-        let corners = luminaire.kind.opening.polygon();
-        if !corners.is_empty() {
+        if luminaire.kind.opening.is_polygon() {
+            let corners = luminaire.kind.opening.outline();
             let beam = -source.world_from_luminaire.z_axis;
             if beam.dot(point - source.position) <= 0.0 {
                 return 0.0;

@@ -60,14 +60,14 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
         }
         let (normal, area_m2) = mesh.normal_and_area(triangle as usize);
         let offset_m = normal.dot(mesh.corners(triangle as usize)[0]);
-        let same = found.iter_mut().find(|(mirror, _)| {
+        let same = found.iter().position(|(mirror, _)| {
             let sign = mirror.normal.dot(normal).signum();
             mirror.normal.dot(normal).abs() > 1.0 - 1e-12 && (offset_m * sign - mirror.offset_m).abs() < 1e-9 * size_m
         });
         match same {
-            Some((mirror, total)) => {
-                mirror.triangles.push(triangle);
-                *total += area_m2;
+            Some(known) => {
+                found[known].0.triangles.push(triangle);
+                found[known].1 += area_m2;
             }
             None if found.len() < 4096 => found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2)),
             None => {}

@@ -1,0 +1,239 @@
+//! The head of an EULUMDAT file: sizes, lamp sets and what they claim. Lines count from 1, as in
+//! the format's description; length lies along C90–C270.
+
+use super::numbers::{Comma, DAMAGED, Number, count, parse, shortened};
+use super::planes::{Plane, spread};
+use super::{Fault, Finding, IntensityDistribution, Opening};
+
+const MM: f64 = 0.001;
+/// Lines before the lamp sets.
+const HEAD_LINES: usize = 26;
+const SET_LINES: usize = 6;
+
+/// The first lamp set.
+pub(super) struct Lamps {
+    pub(super) flux_lm: f64,
+    /// cd per stored number.
+    pub(super) cd_per_value: f64,
+    pub(super) absolute: bool,
+    pub(super) power_w: Option<f64>,
+    pub(super) colour_rendering: Option<f64>,
+    /// Lines up to the end of the last set.
+    pub(super) end: usize,
+}
+
+/// The lines before the numbers proper, numbered from 1.
+pub(super) struct Head<'a> {
+    pub(super) lines: &'a [&'a str],
+    pub(super) findings: Vec<Finding>,
+}
+
+impl Head<'_> {
+    pub(super) fn text(&self, line: usize) -> &str {
+        self.lines
+            .get(line - 1)
+            .map(|text| text.trim())
+            .unwrap_or_default()
+    }
+
+    pub(super) fn optional(&self, line: usize) -> Option<f64> {
+        let token = self.text(line).split_whitespace().next()?;
+        parse(token, Comma::DecimalPoint)
+    }
+
+    pub(super) fn required(&self, line: usize, what: &str) -> Result<Number, Fault> {
+        if line > self.lines.len() {
+            return Err(Fault::new(
+                self.lines.len(),
+                format!("the file ends before {what} (line {line})"),
+                DAMAGED,
+            ));
+        }
+        let message = || format!("expected {what}, found '{}'", shortened(self.text(line)));
+        let value = self
+            .optional(line)
+            .ok_or_else(|| Fault::new(line, message(), DAMAGED))?;
+        Ok(Number { value, line })
+    }
+
+    /// A size of the luminous area in m; what is no number ≥ 0 counts as 0.
+    fn size_m(&mut self, line: usize) -> f64 {
+        if let Some(size_mm) = self.optional(line).filter(|size| *size >= 0.0) {
+            return size_mm * MM;
+        }
+        let message = format!(
+            "'{}' is no size in mm: taken as 0, which lowers the luminous area",
+            self.text(line)
+        );
+        self.findings.push(Finding::new("bad-size", line, message));
+        0.0
+    }
+
+    /// Length lies along C90–C270 (frame x), so the sides seen from C90 and C270 face ±x.
+    pub(super) fn opening(&mut self) -> Opening {
+        let [length_m, width_m] = [16, 17].map(|line| self.size_m(line));
+        let [c0, c90, c180, c270] = [18, 19, 20, 21].map(|line| self.size_m(line));
+        if !(length_m > 0.0) {
+            return Opening::Point;
+        }
+        if width_m > 0.0 {
+            return Opening::Rect {
+                length_m,
+                width_m,
+                side_x_m: 0.5 * (c90 + c270),
+                side_y_m: 0.5 * (c0 + c180),
+            };
+        }
+        Opening::Disc {
+            diameter_m: length_m,
+            height_m: 0.25 * (c0 + c90 + c180 + c270),
+        }
+    }
+
+    pub(super) fn lamps(&mut self) -> Result<Lamps, Fault> {
+        let n_sets = count(
+            self.required(26, "the number of lamp sets")?,
+            "lamp sets",
+            1,
+        )?;
+        let end = HEAD_LINES.saturating_add(n_sets.saturating_mul(SET_LINES));
+        if end > self.lines.len() {
+            return Err(Fault::new(
+                26,
+                format!("the file ends within its {n_sets} lamp sets"),
+                DAMAGED,
+            ));
+        }
+        if n_sets > 1 {
+            let first = HEAD_LINES + 1;
+            let message = format!(
+                "{n_sets} lamp sets: the first is used ('{}', {} lm, {} W); set `flux` for another",
+                self.text(first + 1),
+                self.text(first + 2),
+                self.text(first + 5)
+            );
+            self.findings
+                .push(Finding::new("lamp-sets", first, message));
+        }
+        let absolute = self.required(27, "the number of lamps")?.value < 0.0;
+        let flux = self.required(29, "the luminous flux of the lamps")?;
+        if !(flux.value > 0.0) {
+            let message = format!(
+                "the luminous flux of the lamps is {} lm, expected a number > 0",
+                flux.value
+            );
+            let hint = "intensities are per 1000 lm: write the flux into this line";
+            return Err(Fault::new(flux.line, message, hint));
+        }
+        if self.optional(25).is_some_and(|tilt| tilt.abs() > 0.0) {
+            let message = format!(
+                "measured at a tilt of {}°: not turned back, aim the luminaire yourself",
+                self.text(25)
+            );
+            self.findings.push(Finding::new("tilt", 25, message));
+        }
+        Ok(Lamps {
+            flux_lm: flux.value,
+            cd_per_value: self.conversion() * flux.value / 1000.0,
+            absolute,
+            power_w: self.optional(32).filter(|watts| *watts > 0.0),
+            colour_rendering: colour_rendering(self.text(31)),
+            end,
+        })
+    }
+
+    fn conversion(&mut self) -> f64 {
+        if let Some(factor) = self.optional(24).filter(|factor| *factor > 0.0) {
+            return factor;
+        }
+        let message = format!("conversion factor '{}': taken as 1", self.text(24));
+        self.findings
+            .push(Finding::new("conversion-factor", 24, message));
+        1.0
+    }
+
+    /// Line 2 may declare a light source symmetric about the vertical axis.
+    pub(super) fn check_light_source_type(&mut self, planes: &[Plane]) {
+        let rotational = self
+            .optional(2)
+            .is_some_and(|kind| (kind - 1.0).abs() < 1e-9);
+        let spread = spread(planes);
+        if rotational && spread > 0.02 {
+            let message = format!(
+                "line 2 declares symmetry about the vertical axis, but the planes differ by {:.0} % of the largest \
+                 intensity: the planes are used, so the luminaire's rotation matters",
+                100.0 * spread
+            );
+            self.findings.push(Finding::new("asymmetry", 2, message));
+        }
+    }
+
+    pub(super) fn check_down_share(&mut self, distribution: &IntensityDistribution) {
+        let Some(stated) = self.optional(22) else {
+            return;
+        };
+        let computed = 100.0 * distribution.zonal_flux(0.0, 90.0).0 / distribution.flux().0;
+        if (stated - computed).abs() > 2.0 {
+            let message = format!(
+                "{stated} % of the flux goes down as stated, {computed:.1} % by the intensities: the intensities are \
+                 used; check that the luminaire is not upside down"
+            );
+            self.findings.push(Finding::new("down-share", 22, message));
+        }
+    }
+
+    pub(super) fn description(&self) -> String {
+        let parts = [self.text(1), self.text(9)]
+            .into_iter()
+            .filter(|part| !part.is_empty());
+        parts.collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// R_a as a number, or the lower end of its group (DIN 5035): 1A ≥ 90, 1B ≥ 80, 2A ≥ 70 …
+fn colour_rendering(text: &str) -> Option<f64> {
+    let groups = [
+        ("1A", 90.0),
+        ("1B", 80.0),
+        ("2A", 70.0),
+        ("2B", 60.0),
+        ("3", 40.0),
+        ("4", 20.0),
+    ];
+    let number = text
+        .split_whitespace()
+        .next()
+        .and_then(|token| parse(token, Comma::DecimalPoint));
+    match number {
+        Some(ra) if ra > 4.0 && ra <= 100.0 => Some(ra),
+        Some(group) if !(3.0..=4.0).contains(&group) => None,
+        _ => groups
+            .iter()
+            .find(|(group, _)| text.to_ascii_uppercase().starts_with(group))
+            .map(|(_, ra)| *ra),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: group codes read as R_a = 1.
+    #[test]
+    fn colour_rendering_groups() {
+        let read = ["82", "1B", "1A/>90", "0", "nw", "4", "2b", ""].map(colour_rendering);
+        assert_eq!(
+            read,
+            [
+                Some(82.0),
+                Some(80.0),
+                Some(90.0),
+                None,
+                None,
+                Some(20.0),
+                Some(60.0),
+                None
+            ]
+        );
+    }
+}

@@ -1,0 +1,216 @@
+//! Photometric files → one domain type, [`IntensityDistribution`]: absolute candelas, expanded to
+//! the full sphere, in the luminaire frame. Parsers take bytes and never read files. The trap:
+//! LM-63's 0° plane lies *along* the luminaire (+x), EULUMDAT's C0 *across* it (−y).
+
+// `!(x > 0.0)` is meant: such a guard stops NaN too.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
+mod distribution;
+mod emission;
+mod findings;
+mod ies;
+mod ies_head;
+mod ies_opening;
+mod ldt;
+mod ldt_head;
+mod numbers;
+mod opening;
+mod planes;
+mod table;
+mod text;
+
+pub use distribution::{DistributionError, IntensityDistribution};
+pub use ies::Lm63Version;
+pub use opening::Opening;
+
+/// What a photometric file says, checked.
+#[derive(Clone, Debug)]
+pub struct Photometry {
+    /// The format it was recognised as.
+    pub format: Format,
+    /// Manufacturer and luminaire as the file names them.
+    pub description: String,
+    /// Absolute intensities in the luminaire frame; every factor of the file is applied.
+    pub distribution: IntensityDistribution,
+    /// The light-emitting area.
+    pub opening: Opening,
+    /// EULUMDAT: flux × LOR. LM-63 relative: flux of the lamps. `None` for LM-63 absolute.
+    pub rated_flux_lm: Option<f64>,
+    /// Flux of the lamps; `None` for absolute photometry.
+    pub lamp_flux_lm: Option<f64>,
+    /// Light output ratio stated by the file, 0 … 1; LM-63 states none.
+    pub lor: Option<f64>,
+    /// Connected power, W.
+    pub power_w: Option<f64>,
+    /// Colour rendering index R_a, or the lower end of its stated group.
+    pub colour_rendering: Option<f64>,
+    /// Oddities that do not prevent a calculation.
+    pub findings: Vec<Finding>,
+}
+
+/// Photometric file formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// ANSI/IES LM-63, `.ies`.
+    Lm63 {
+        /// Its edition.
+        version: Lm63Version,
+    },
+    /// EULUMDAT, `.ldt`.
+    Eulumdat,
+}
+
+/// An oddity of a file and what follows from it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// Stable word, `flux-mismatch`.
+    pub code: &'static str,
+    /// Line of the file, from 1, where one line is at fault.
+    pub line: Option<usize>,
+    /// What was found and what it means for the results.
+    pub message: String,
+}
+
+impl Finding {
+    fn new(code: &'static str, line: impl Into<Option<usize>>, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            line: line.into(),
+            message: message.into(),
+        }
+    }
+}
+
+/// A file that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {message}\n  hint: {hint}")]
+pub struct PhotometryError {
+    /// Name as given by the caller.
+    pub file: String,
+    /// Line from 1.
+    pub line: usize,
+    /// What is wrong, with the values at fault.
+    pub message: String,
+    /// What to do about it.
+    pub hint: String,
+}
+
+/// A parser's error before the file's name is known.
+#[derive(Debug)]
+struct Fault {
+    line: usize,
+    message: String,
+    hint: &'static str,
+}
+
+impl Fault {
+    fn new(line: usize, message: impl Into<String>, hint: &'static str) -> Self {
+        Self {
+            line,
+            message: message.into(),
+            hint,
+        }
+    }
+}
+
+/// Reads LM-63 or EULUMDAT, recognised by content; `file_name` appears in messages only.
+///
+/// # Errors
+/// When the bytes are neither format, or damaged, or describe no usable distribution.
+pub fn parse(bytes: &[u8], file_name: &str) -> Result<Photometry, PhotometryError> {
+    parse_content(bytes).map_err(|fault| PhotometryError {
+        file: file_name.to_owned(),
+        line: fault.line,
+        message: fault.message,
+        hint: fault.hint.to_owned(),
+    })
+}
+
+fn parse_content(bytes: &[u8]) -> Result<Photometry, Fault> {
+    const EXPORT_AGAIN: &str =
+        "get the photometric file (.ies or .ldt) from its manufacturer again";
+    let text = text::decode(bytes);
+    if text.trim().is_empty() {
+        return Err(Fault::new(1, "the file is empty", EXPORT_AGAIN));
+    }
+    if bytes.starts_with(b"PK") || text.contains('\0') {
+        let hint = "a GLDF or ULD container must be unpacked: give the .ies or .ldt inside";
+        return Err(Fault::new(1, "this is a binary file", hint));
+    }
+    let lines: Vec<&str> = text.lines().collect();
+    let mut photometry = if ies::recognises(&lines) {
+        ies::read(&lines)?
+    } else if ldt::recognises(&lines) {
+        ldt::read(&lines)?
+    } else {
+        let message = "neither LM-63 (no TILT= line) nor EULUMDAT (line 3 is no symmetry 0 … 4)";
+        return Err(Fault::new(3.min(lines.len()), message, EXPORT_AGAIN));
+    };
+    if !(photometry.distribution.flux().0 > 0.0) {
+        return Err(Fault::new(
+            lines.len(),
+            "every intensity is 0",
+            EXPORT_AGAIN,
+        ));
+    }
+    let more = findings::check(&photometry);
+    photometry.findings.extend(more);
+    Ok(photometry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: a panic on what is no photometry at all, a message without place or hint.
+    #[test]
+    fn rubbish_is_an_error_with_a_hint() {
+        let rubbish: [&[u8]; 6] = [
+            b"",
+            b" \r\n\r\n",
+            b"PK\x03\x04",
+            b"\0\xff\xfe\x01",
+            b"hello",
+            b"a\nb\n9\nc\n",
+        ];
+        for bytes in rubbish {
+            let error = parse(bytes, "a.ldt").expect_err("rubbish");
+            assert!(
+                error.to_string().starts_with("a.ldt:") && error.to_string().contains("\n  hint: "),
+                "{error}"
+            );
+        }
+    }
+
+    /// Catches: recognition by extension, so that a renamed file is misread.
+    #[test]
+    fn content_decides_the_format() {
+        let ies = parse(ies::tests::SAMPLE.as_bytes(), "lamp.ldt").expect("LM-63");
+        assert_eq!(
+            ies.format,
+            Format::Lm63 {
+                version: Lm63Version::Y1995
+            }
+        );
+        let ldt = parse(ldt::tests::sample().as_bytes(), "lamp.ies").expect("EULUMDAT");
+        assert_eq!(ldt.format, Format::Eulumdat);
+    }
+
+    /// Catches: an index out of range or an overflow on truncated or flipped input.
+    #[test]
+    fn damaged_files_never_panic() {
+        for text in [ies::tests::SAMPLE.to_owned(), ldt::tests::sample()] {
+            let whole = text.as_bytes();
+            for cut in (0..whole.len()).step_by(37) {
+                let _ = parse(&whole[..cut], "cut");
+            }
+            for at in 0..whole.len() {
+                for flip in [0x01, 0x08, 0x10, 0x80] {
+                    let mut bytes = whole.to_vec();
+                    bytes[at] ^= flip;
+                    let _ = parse(&bytes, "flipped");
+                }
+            }
+        }
+    }
+}

@@ -122,8 +122,8 @@ impl<'s> Emitters<'s> {
         let blind = &self.luminaire(source).body;
         match source.mirror {
             None => {
-                // The opening may lie *in* a surface: stop short of it by the lift of ray origins.
-                let reach = arrival.distance_m - tracer.offset_m();
+                // The opening may lie *in* a surface: stop short of it.
+                let reach = arrival.distance_m - 2.0 * tracer.offset_m();
                 tracer.transmittance(point, arrival.direction, reach, blind)
             }
             Some(mirror) => self.passed_by_mirror(&self.mirrors[mirror], tracer, point, arrival, blind),

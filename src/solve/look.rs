@@ -122,11 +122,19 @@ pub(super) fn add_direct(
     if !(reflectance + transmittance > 0.0) {
         return;
     }
+    let (above, below) = (landing.origin(scene, true), landing.origin(scene, false));
     scratch.clear();
     let mut total = 0.0;
     for (index, source) in emitters.sources.iter().enumerate() {
-        let arrival = emitters.arrival(source, landing.point, rng.uniforms());
-        let cos = landing.normal.dot(arrival.direction);
+        let u = rng.uniforms();
+        // Directions are taken from the lifted origin that the shadow ray uses: from the surface
+        // itself the ray would end behind a plate in which the opening lies.
+        let mut arrival = emitters.arrival(source, above, u);
+        let mut cos = landing.normal.dot(arrival.direction);
+        if cos < 0.0 && transmittance > 0.0 {
+            arrival = emitters.arrival(source, below, u);
+            cos = landing.normal.dot(arrival.direction);
+        }
         let albedo = if cos > 0.0 { reflectance } else { transmittance };
         let luminance = arrival.normal_lx * cos.abs() * albedo * std::f64::consts::FRAC_1_PI;
         if luminance > 0.0 && luminance.is_finite() {
@@ -140,7 +148,7 @@ pub(super) fn add_direct(
             continue;
         }
         let source = &emitters.sources[*index];
-        let passed = emitters.passed(source, landing.origin(scene, *same_side), arrival);
+        let passed = emitters.passed(source, if *same_side { above } else { below }, arrival);
         channels[source.channel] += luminance * passed / chance;
     }
 }

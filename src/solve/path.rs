@@ -50,13 +50,13 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
 
 /// One luminaire at random, one point of its opening, straight or through panes.
 fn lamp_light(scene: &Scene, at: DVec3, kernel: &Kernel, weight: f64, rng: &mut Rng, out: &mut [f64]) {
-    if let Some((lx, direction, channel)) = one_lamp(scene, at, rng, |_| at) {
+    if let Some((lx, direction, channel)) = one_lamp(scene, rng, |_| at) {
         out[channel * PARTS + Part::Direct as usize] += lx * kernel.response(direction) * weight;
     }
 }
 
 /// Normal illuminance from a random luminaire (times their number), its direction and channel.
-fn one_lamp(scene: &Scene, at: DVec3, rng: &mut Rng, origin: impl Fn(DVec3) -> DVec3) -> Option<(f64, DVec3, usize)> {
+fn one_lamp(scene: &Scene, rng: &mut Rng, origin_towards: impl Fn(DVec3) -> DVec3) -> Option<(f64, DVec3, usize)> {
     let count = scene.luminaires.len();
     if count == 0 {
         return None;
@@ -64,6 +64,7 @@ fn one_lamp(scene: &Scene, at: DVec3, rng: &mut Rng, origin: impl Fn(DVec3) -> D
     let chosen = ((rng.uniform() * count as f64) as usize).min(count - 1);
     let lamp = &scene.luminaires[chosen];
     let from = lamp.position + lamp.world_from_luminaire * lamp.kind.opening.point(rng.uniforms());
+    let at = origin_towards(from);
     let distance_m = from.distance(at);
     let direction = (from - at) / distance_m;
     let local = lamp.world_from_luminaire.transpose() * -direction;
@@ -71,8 +72,8 @@ fn one_lamp(scene: &Scene, at: DVec3, rng: &mut Rng, origin: impl Fn(DVec3) -> D
     if !(intensity_cd > 0.0 && distance_m > 0.0) {
         return None;
     }
-    let reach = distance_m - scene.tracer.offset_m();
-    let passed = scene.tracer.transmittance(origin(direction), direction, reach, &lamp.body);
+    let reach = distance_m - 2.0 * scene.tracer.offset_m();
+    let passed = scene.tracer.transmittance(at, direction, reach, &lamp.body);
     let lx = intensity_cd / (distance_m * distance_m) * passed * count as f64;
     Some((lx, direction, scene.channel_of[chosen]))
 }
@@ -118,8 +119,8 @@ fn trace(
         let Some(next) = bsdf.sample(frame.transpose() * -direction, rng.uniforms()) else { return };
         if !next.specular {
             diffuse_seen = true;
-            let side = |towards: DVec3| point + normal * lift * towards.dot(normal).signum();
-            if let Some((lx, towards, channel)) = one_lamp(scene, point, rng, side) {
+            let side = |from: DVec3| point + normal * lift * (from - point).dot(normal).signum();
+            if let Some((lx, towards, channel)) = one_lamp(scene, rng, side) {
                 let local = frame.transpose() * towards;
                 let value = bsdf.f(local, DVec3::Z) * local.z.abs() * lx * weight;
                 out[channel * PARTS + Part::Indirect as usize] += value;

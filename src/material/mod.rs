@@ -4,7 +4,7 @@
 mod pane;
 
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::FRAC_1_PI;
 
 pub use pane::Pane;
 
@@ -193,6 +193,7 @@ const EXAMPLES: [Bsdf; 6] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn laws_of_every_model() {

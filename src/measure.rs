@@ -1,0 +1,118 @@
+//! Sheets → named quantities with intervals. Light scenes, dimming and maintenance are weights on
+//! channels here; nothing is solved again. It does not know which solver ran, and nothing leaves it
+//! without its uncertainty.
+
+pub mod area;
+pub mod flux;
+pub mod room_ugr;
+pub mod view;
+
+use crate::outcome::Interval;
+use crate::project::{LightScene, Room, World};
+use crate::scene::Channel;
+use crate::solve::{PARTS, Part, Sheet};
+use crate::units::Undefined;
+
+/// The sheets of one world, read by row and weighted by channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Answers<'s> {
+    /// One sheet for each block, in order.
+    pub sheets: &'s [Sheet],
+    /// Channels of the scene.
+    pub channels: usize,
+}
+
+/// A gauged quantity: its value and an interval that errs with a given probability.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gauged {
+    /// Point estimate.
+    pub value: Result<f64, Undefined>,
+    /// Standard error of first order; 0 where it is exact.
+    pub se: f64,
+    /// Lower end.
+    pub lo: f64,
+    /// Upper end.
+    pub hi: f64,
+    /// Index of the extreme point or direction.
+    pub place: Option<usize>,
+}
+
+impl Gauged {
+    /// No value.
+    pub fn undefined(reason: Undefined) -> Self {
+        Self { value: Err(reason), se: f64::NAN, lo: f64::NEG_INFINITY, hi: f64::INFINITY, place: None }
+    }
+
+    /// A value without numerical error.
+    pub fn exact(value: f64) -> Self {
+        Self { value: Ok(value), se: 0.0, lo: value, hi: value, place: None }
+    }
+
+    /// As an interval for reports.
+    ///
+    /// # Errors
+    /// The reason why there is no value.
+    pub fn interval(&self) -> Result<Interval, Undefined> {
+        let value = self.value.clone()?;
+        Ok(Interval { value, se: self.se, lo: self.lo, hi: self.hi })
+    }
+}
+
+impl Answers<'_> {
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.sheets.len()
+    }
+
+    /// Block values of a row: all parts, weighted by channel.
+    pub fn total(&self, row: usize, weights: &[f64]) -> Vec<f64> {
+        let span = self.channels * PARTS;
+        self.sheets
+            .iter()
+            .map(|sheet| {
+                let values = &sheet.values[row * span..(row + 1) * span];
+                values.chunks_exact(PARTS).zip(weights).map(|(parts, w)| w * parts.iter().sum::<f64>()).sum()
+            })
+            .collect()
+    }
+
+    /// Block values of one part of a row.
+    pub fn part(&self, row: usize, weights: &[f64], part: Part) -> Vec<f64> {
+        let span = self.channels * PARTS;
+        self.sheets
+            .iter()
+            .map(|sheet| {
+                let values = &sheet.values[row * span..(row + 1) * span];
+                values.chunks_exact(PARTS).zip(weights).map(|(parts, w)| w * parts[part as usize]).sum()
+            })
+            .collect()
+    }
+
+    /// Mean over blocks of one part of a row.
+    pub fn part_mean(&self, row: usize, weights: &[f64], part: Part) -> f64 {
+        let blocks = self.part(row, weights, part);
+        blocks.iter().sum::<f64>() / blocks.len().max(1) as f64
+    }
+}
+
+/// Weights of the channels for a light scene: the group's factor, and for maintained values
+/// MF = LLMF·LSF·LMF of the type times the room's RSMF. Emitting surfaces always count as they are.
+pub fn weights(world: &World, light_scene: &LightScene, room: &Room, maintained: bool) -> Vec<f64> {
+    let scene = &world.scene;
+    scene
+        .channels
+        .iter()
+        .map(|channel| match channel {
+            Channel::Luminaires { group, kind } => {
+                let maintenance = if maintained {
+                    let of_kind = scene.luminaires.iter().find(|l| l.kind.name == *kind);
+                    of_kind.map_or(1.0, |l| l.kind.maintenance.factor()) * room.rsmf
+                } else {
+                    1.0
+                };
+                light_scene.factor(group) * maintenance
+            }
+            Channel::Surfaces { .. } => 1.0,
+        })
+        .collect()
+}

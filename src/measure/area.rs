@@ -1,0 +1,202 @@
+//! Statistics of a grid with honest intervals: the mean from block means, extremes and uniformity
+//! as tests on every point. The minimum of noisy values is biased low by about the noise; its
+//! interval is not: "at least" needs every point's lower end, "below" one point's corrected upper end.
+
+use super::{Answers, Gauged};
+use crate::estimate::{Estimate, Pair};
+use crate::outcome::PointValue;
+use crate::plan::{PlannedQuantity, Rows};
+use crate::quantity::Statistic;
+use crate::solve::Part;
+use crate::units::Undefined;
+
+/// Block values at every evaluated point of a grid: `[point][block]`, with the grid index of each.
+#[derive(Clone, Debug)]
+pub struct Blocks {
+    /// Index in the grid of each entry of `values`.
+    pub index: Vec<usize>,
+    /// Block values.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// Block values of a planned quantity. A ratio is linearised about its estimate, so that means and
+/// errors are those of the ratio to first order.
+pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64]) -> Blocks {
+    let mut blocks = Blocks { index: Vec::new(), values: Vec::new() };
+    for (index, rows) in entry.rows.iter().enumerate() {
+        let values = match *rows {
+            None => continue,
+            Some(Rows::One(row)) => answers.total(row, weights),
+            Some(Rows::Ratio(above, below)) => {
+                let (x, y) = (answers.total(above, weights), answers.total(below, weights));
+                let pair = Pair::from_blocks(&x, &y);
+                if pair.y > 0.0 {
+                    let ratio = pair.x / pair.y;
+                    x.iter().zip(&y).map(|(x, y)| ratio + (x - ratio * y) / pair.y).collect()
+                } else {
+                    vec![f64::NAN; x.len()]
+                }
+            }
+        };
+        blocks.index.push(index);
+        blocks.values.push(values);
+    }
+    blocks
+}
+
+/// Point values for reports, `None` where the grid point is excluded.
+pub fn points(answers: &Answers, entry: &PlannedQuantity, weights: &[f64], alpha: f64) -> Vec<Option<PointValue>> {
+    let blocks = blocks(answers, entry, weights);
+    let mut points = vec![None; entry.rows.len()];
+    for (index, values) in blocks.index.iter().zip(&blocks.values) {
+        let estimate = Estimate::from_blocks(values);
+        let (lo, hi) = estimate.interval(alpha);
+        let direct = match entry.rows[*index] {
+            Some(Rows::One(row)) => answers.part_mean(row, weights, Part::Direct),
+            _ => f64::NAN,
+        };
+        points[*index] = Some(PointValue {
+            value: estimate.value,
+            se: estimate.se,
+            lo,
+            hi,
+            direct,
+            indirect: estimate.value - direct,
+        });
+    }
+    points
+}
+
+/// A statistic of a grid whose interval errs with probability `alpha`.
+pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
+    if blocks.values.is_empty() {
+        return Gauged::undefined(Undefined::because("the area has no point"));
+    }
+    if blocks.values.iter().flatten().any(|value| !value.is_finite()) {
+        return Gauged::undefined(Undefined::because("the quantity is undefined where no light arrives"));
+    }
+    match statistic {
+        Statistic::Mean => {
+            let estimate = Estimate::from_blocks(&mean_blocks(blocks));
+            let (lo, hi) = estimate.interval(alpha);
+            Gauged { value: Ok(estimate.value), se: estimate.se, lo, hi, place: None }
+        }
+        Statistic::Min => extreme(blocks, alpha, 1.0),
+        Statistic::Max => extreme(blocks, alpha, -1.0),
+        Statistic::U0 => uniformity(blocks, alpha),
+        Statistic::Ud => diversity(blocks, alpha),
+        Statistic::Value => Gauged::undefined(Undefined::because("an area has no single value: ask for its mean, min, max, U0 or Ud")),
+    }
+}
+
+fn mean_blocks(blocks: &Blocks) -> Vec<f64> {
+    let count = blocks.values[0].len();
+    (0..count).map(|k| blocks.values.iter().map(|point| point[k]).sum::<f64>() / blocks.values.len() as f64).collect()
+}
+
+/// Minimum (`sign` = 1) or maximum (`sign` = −1) over the points.
+fn extreme(blocks: &Blocks, alpha: f64, sign: f64) -> Gauged {
+    let corrected = alpha / blocks.values.len() as f64;
+    let (mut value, mut se, mut place) = (f64::INFINITY, 0.0, 0);
+    let (mut lo, mut hi) = (f64::INFINITY, f64::INFINITY);
+    for (index, values) in blocks.values.iter().enumerate() {
+        let estimate = Estimate::from_blocks(values);
+        let signed = Estimate { value: sign * estimate.value, ..estimate };
+        if signed.value < value {
+            (value, se, place) = (signed.value, estimate.se, blocks.index[index]);
+        }
+        lo = lo.min(signed.interval(alpha).0);
+        hi = hi.min(signed.interval(corrected).1);
+    }
+    let (lo, hi) = if sign > 0.0 { (lo, hi) } else { (-hi, -lo) };
+    Gauged { value: Ok(sign * value), se, lo, hi, place: Some(place) }
+}
+
+/// U0 = E_min / Ē: U0 ≥ u means every contrast E_i − u·Ē ≥ 0, so its interval is made of Fieller
+/// intervals of all points: the lower ends uncorrected, the upper ends by Bonferroni.
+fn uniformity(blocks: &Blocks, alpha: f64) -> Gauged {
+    let mean = mean_blocks(blocks);
+    if !(mean.iter().sum::<f64>() > 0.0) {
+        return Gauged::undefined(Undefined::because("no light arrives on the area: 0/0"));
+    }
+    let corrected = alpha / blocks.values.len() as f64;
+    let mut least: Option<(f64, f64, usize)> = None;
+    let (mut lo, mut hi) = (f64::INFINITY, f64::INFINITY);
+    for (index, values) in blocks.values.iter().enumerate() {
+        let pair = Pair::from_blocks(values, &mean);
+        let ratio = pair.ratio();
+        if least.is_none_or(|(value, _, _)| ratio.value < value) {
+            least = Some((ratio.value, ratio.se, blocks.index[index]));
+        }
+        lo = lo.min(pair.ratio_interval(alpha).0);
+        hi = hi.min(pair.ratio_interval(corrected).1);
+    }
+    let (value, se, place) = least.expect("an area has points here");
+    Gauged { value: Ok(value), se, lo, hi, place: Some(place) }
+}
+
+/// U_d = E_min / E_max, from the intervals of both at half the risk each (conservative).
+fn diversity(blocks: &Blocks, alpha: f64) -> Gauged {
+    let least = extreme(blocks, 0.5 * alpha, 1.0);
+    let most = extreme(blocks, 0.5 * alpha, -1.0);
+    match (least.value, most.value) {
+        (Ok(small), Ok(large)) if large > 0.0 => {
+            let value = small / large;
+            let se = (least.se / large).hypot(value * most.se / large);
+            let lo = least.lo.max(0.0) / most.hi;
+            let hi = if most.lo > 0.0 { least.hi / most.lo } else { f64::INFINITY };
+            Gauged { value: Ok(value), se, lo, hi, place: least.place }
+        }
+        _ => Gauged::undefined(Undefined::because("no light arrives on the area: 0/0")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    /// A grid of independent noisy points about `truth`.
+    fn noisy(truth: &[f64], sd: f64, blocks: usize, seed: u64) -> Blocks {
+        let mut rng = Rng::new(seed, 0, 0);
+        let values = truth
+            .iter()
+            .map(|t| (0..blocks).map(|_| t + sd * 12f64.sqrt() * (rng.uniform() - 0.5)).collect())
+            .collect();
+        Blocks { index: (0..truth.len()).collect(), values }
+    }
+
+    #[test]
+    fn a_uniformity_at_its_limit_is_called_wrongly_no_more_often_than_stated() {
+        // 40 points, one of which sits exactly at U0 = 0.6; 1000 runs, α = 5 %.
+        let mut truth = vec![100.0; 40];
+        truth[7] = 0.6 * (39.0 * 100.0) / (40.0 - 0.6);
+        let (mut below, mut above) = (0, 0);
+        for run in 0..1000 {
+            let gauged = gauge(&noisy(&truth, 20.0, 64, run), Statistic::U0, 0.05);
+            below += usize::from(gauged.hi < 0.6);
+            above += usize::from(gauged.lo > 0.6);
+        }
+        // Binomial 5 σ above 2.5 % of 1000: 25 + 25.
+        assert!(below <= 50 && above <= 50, "wrongly failed {below}, wrongly passed {above}");
+    }
+
+    #[test]
+    fn statistics_of_exact_values_are_exact() {
+        let blocks = noisy(&[100.0, 200.0, 300.0], 0.0, 4, 1);
+        let of = |statistic| gauge(&blocks, statistic, 0.05).value.unwrap();
+        assert!((of(Statistic::Mean) - 200.0).abs() < 1e-12);
+        assert!((of(Statistic::Min) - 100.0).abs() < 1e-12);
+        assert!((of(Statistic::Max) - 300.0).abs() < 1e-12);
+        assert!((of(Statistic::U0) - 0.5).abs() < 1e-12);
+        assert!((of(Statistic::Ud) - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!(gauge(&blocks, Statistic::Min, 0.05).place, Some(0));
+    }
+
+    #[test]
+    fn darkness_has_no_uniformity() {
+        let dark = noisy(&[0.0, 0.0], 0.0, 4, 1);
+        assert!(gauge(&dark, Statistic::U0, 0.05).value.is_err());
+        assert!(gauge(&dark, Statistic::Ud, 0.05).value.is_err());
+    }
+}

@@ -1,0 +1,224 @@
+//! Requirements → queries: what must be computed at all, and why. Areas become grids of receivers,
+//! observers become receivers at the eye, norm rows become requirements on them. After this step
+//! nobody needs to know of norms or observers until the answers are measured.
+
+mod areas;
+mod requirements;
+
+use glam::DVec3;
+
+use crate::grid::{Grid, GridError};
+use crate::outcome::Bound;
+use crate::project::{AreaKind, Project, World};
+use crate::quantity::{Quantity, Statistic};
+use crate::query::{Demand, Kernel, Receiver};
+
+/// The plan of one world.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// What the solver is asked.
+    pub demand: Demand,
+    /// One entry for each room of the world.
+    pub rooms: Vec<PlannedRoom>,
+    /// What was decided and why, one sentence each.
+    pub reasons: Vec<String>,
+    /// Rows given out to kernels so far.
+    kernels: usize,
+}
+
+/// What is asked in one room.
+#[derive(Clone, Debug, Default)]
+pub struct PlannedRoom {
+    /// Areas.
+    pub areas: Vec<PlannedArea>,
+    /// Observers, one entry for each direction.
+    pub views: Vec<PlannedView>,
+    /// Requirements.
+    pub requirements: Vec<PlannedRequirement>,
+}
+
+/// An area with its grid and the rows that answer it.
+#[derive(Clone, Debug)]
+pub struct PlannedArea {
+    /// Name.
+    pub name: String,
+    /// Role.
+    pub kind: AreaKind,
+    /// Name of the task area it belongs to.
+    pub of: Option<String>,
+    /// Row of the norm by which it is judged.
+    pub row: Option<String>,
+    /// Light scene by which it is judged.
+    pub light_scene: usize,
+    /// Points.
+    pub grid: Grid,
+    /// Quantities with the rows that answer them.
+    pub quantities: Vec<PlannedQuantity>,
+}
+
+/// One quantity on a grid.
+#[derive(Clone, Debug)]
+pub struct PlannedQuantity {
+    /// Which.
+    pub quantity: Quantity,
+    /// For each grid point the sheet's row, or the rows of numerator and denominator; `None` where
+    /// the point is excluded.
+    pub rows: Vec<Option<Rows>>,
+}
+
+/// Where a point's answer stands in a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rows {
+    /// The value itself.
+    One(usize),
+    /// First over second.
+    Ratio(usize, usize),
+}
+
+/// An observer looking in one direction.
+#[derive(Clone, Debug)]
+pub struct PlannedView {
+    /// Name.
+    pub name: String,
+    /// Index among the world's viewpoints.
+    pub viewpoint: usize,
+    /// Eye, m.
+    pub eye: DVec3,
+    /// Unit line of sight.
+    pub direction: DVec3,
+    /// Row of the illuminance at the eye.
+    pub row: usize,
+    /// Light scene by which it is judged.
+    pub light_scene: usize,
+}
+
+/// A requirement and what it is measured on.
+#[derive(Clone, Debug)]
+pub struct PlannedRequirement {
+    /// Norm key or `project`.
+    pub standard: String,
+    /// Row or clause.
+    pub clause: String,
+    /// What it limits.
+    pub subject: Subject,
+    /// As printed.
+    pub subject_name: String,
+    /// Light scene.
+    pub light_scene: usize,
+    /// Quantity.
+    pub quantity: Quantity,
+    /// Statistic.
+    pub statistic: Statistic,
+    /// Limit.
+    pub bound: Bound,
+    /// Standing of the limit.
+    pub verified: String,
+}
+
+/// Subject of a planned requirement, by index within the planned room.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// Quantity `1` of area `0`.
+    Area(usize, usize),
+    /// All directions of a viewpoint (world index): the worst is judged.
+    Viewpoint(usize),
+    /// The room's UGR by the table method with this spacing-to-height ratio.
+    UgrTable(f64),
+    /// Declared colour rendering of the room's luminaires.
+    ColourRendering,
+    /// Nothing in the project lets it be assessed; the reason.
+    Missing(String),
+}
+
+/// A mistake that only planning can find.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// The grid of an area cannot be laid.
+    #[error("area \"{area}\": {error}")]
+    Grid {
+        /// Area name.
+        area: String,
+        /// What is wrong.
+        error: GridError,
+    },
+    /// Every point is excluded.
+    #[error("area \"{area}\": every grid point lies inside furniture or another area; move it or refine its grid")]
+    NoPoints {
+        /// Area name.
+        area: String,
+    },
+    /// A row that does not exist.
+    #[error("norm {standard} has no row \"{row}\" (asked for by {by}); `gershun norm show {standard}` lists its rows")]
+    NoRow {
+        /// Norm key.
+        standard: String,
+        /// Row as written.
+        row: String,
+        /// Who asked.
+        by: String,
+    },
+}
+
+/// Plans one world.
+///
+/// # Errors
+/// [`PlanError`]s of all areas at once.
+pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
+    let mut plan = Plan { rooms: vec![PlannedRoom::default(); world.rooms.len()], ..Plan::default() };
+    let mut errors = Vec::new();
+    areas::plan(project, world, &mut plan, &mut errors);
+    for (index, viewpoint) in world.viewpoints.iter().enumerate() {
+        for &direction in &viewpoint.directions {
+            let row = plan.ask(Receiver {
+                point: viewpoint.eye,
+                lift: DVec3::ZERO,
+                kernels: vec![Kernel::Planar { normal: direction }],
+            });
+            plan.rooms[viewpoint.room].views.push(PlannedView {
+                name: viewpoint.name.clone(),
+                viewpoint: index,
+                eye: viewpoint.eye,
+                direction,
+                row,
+                light_scene: viewpoint.light_scene.unwrap_or(0),
+            });
+        }
+    }
+    areas::number_rays(&mut plan);
+    requirements::plan(project, world, &mut plan, &mut errors);
+    plan.demand.flux = true;
+    explain(project, world, &mut plan);
+    if errors.is_empty() { Ok(plan) } else { Err(errors) }
+}
+
+impl Plan {
+    /// Adds a receiver and returns the row of its first kernel.
+    fn ask(&mut self, receiver: Receiver) -> usize {
+        let row = self.kernels;
+        self.kernels += receiver.kernels.len();
+        self.demand.receivers.push(receiver);
+        row
+    }
+}
+
+fn explain(project: &Project, world: &World, plan: &mut Plan) {
+    let points = plan.demand.receivers.len();
+    let surfaces = world.scene.mesh.surfaces.iter().map(|s| &world.scene.materials[s.material].bsdf);
+    let specular = surfaces.filter(|bsdf| bsdf.specular(1.0).is_some()).count();
+    let mut say = |text: String| plan.reasons.push(text);
+    say(format!(
+        "{points} receivers and {} lines of sight ask for a stored field: light is solved once, then looked up.",
+        plan.demand.rays.len()
+    ));
+    say("Every surface stores one number a side: all scattering materials are diffuse, so their luminance has no direction.".into());
+    if specular > 0 {
+        say(format!("{specular} specular surfaces store nothing: rays are followed through them, and luminaires are imaged in their planes."));
+    } else {
+        say("No surface is specular: rays end at the first surface.".into());
+    }
+    let groups = world.scene.channels.len();
+    say(format!(
+        "{groups} channels are solved at once; {} light scenes and the maintenance factors are weights on them.",
+        project.light_scenes.len()
+    ));
+}

@@ -15,7 +15,7 @@ use crate::geometry::trace::Tracer;
 use crate::luminaire::Luminaire;
 use crate::scene::Scene;
 
-pub use direct::unshadowed;
+pub use direct::{TOLERANCE, unshadowed};
 pub use images::Mirror;
 pub use seen::{Seen, seen_from};
 

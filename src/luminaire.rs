@@ -26,6 +26,9 @@ pub struct LuminaireType {
     pub power_w: Option<f64>,
     /// Luminaire part of the maintenance factor, LLMF·LSF·LMF; a room's RSMF multiplies it.
     pub maintenance: Maintenance,
+    /// Azimuth of the C0 half-plane in the luminaire frame, degrees from +x towards +y: −90 for
+    /// EULUMDAT, 0 for LM-63 and built-in sources. For drawings only.
+    pub c0_azimuth_deg: f64,
     /// Photometric file as written in the project, empty for built-in sources.
     pub file: String,
     /// Colour rendering index declared for this type, if any.

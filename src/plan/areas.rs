@@ -194,7 +194,7 @@ fn exclude(grid: &mut Grid, spec: &AreaSpec, index: usize, specs: &[AreaSpec], s
         let flat = DVec2::new(point.position.x, point.position.y);
         if others.iter().any(|outline| contains(outline, flat)) {
             point.excluded = Some(Exclusion::InOtherArea);
-        } else if spec.kind != AreaKind::Surface && inside_furniture(scene, point.position) {
+        } else if inside_furniture(scene, point, spec.kind == AreaKind::Surface) {
             point.excluded = Some(Exclusion::InsideFurniture);
         }
     }
@@ -224,16 +224,26 @@ fn contains(outline: &[DVec2], p: DVec2) -> bool {
     inside
 }
 
-/// Inside a closed solid every ray first meets a back side; six directions guard against sheets.
-fn inside_furniture(scene: &Scene, at: DVec3) -> bool {
-    [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].into_iter().all(|axis| {
-        // Slightly off the axes, so that the rays do not run along faces.
-        let direction = (axis + DVec3::new(1.3e-3, 2.7e-3, 3.9e-3)).normalize();
-        scene.tracer.closest(at, direction, &[]).is_some_and(|hit| {
-            let surface = scene.tracer.surface(hit.triangle) as usize;
-            !hit.front && scene.mesh.surfaces[surface].furniture
+/// Inside a closed solid every ray first meets a back side; several directions guard against open
+/// sheets. On a surface the ones into it are left out: a cabinet sunk into a wall hides its points.
+fn inside_furniture(scene: &Scene, point: &grid::GridPoint, on_surface: bool) -> bool {
+    let at = point.position + if on_surface { point.normal * 1e-4 } else { DVec3::ZERO };
+    [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z]
+        .into_iter()
+        .filter(|axis| !on_surface || axis.dot(point.normal) > -0.5)
+        .all(|axis| {
+            // Slightly off the axes, so that the rays do not run along faces.
+            let direction = (axis + DVec3::new(1.3e-3, 2.7e-3, 3.9e-3)).normalize();
+            let direction = if on_surface && direction.dot(point.normal) < 0.0 {
+                direction - 2.0 * direction.dot(point.normal) * point.normal
+            } else {
+                direction
+            };
+            scene.tracer.closest(at, direction, &[]).is_some_and(|hit| {
+                let surface = scene.tracer.surface(hit.triangle) as usize;
+                !hit.front && scene.mesh.surfaces[surface].furniture
+            })
         })
-    })
 }
 
 /// What is measured on an area: what the user listed, what its kind implies, what `[[require]]` needs.

@@ -9,7 +9,7 @@ use crate::quantity::{Quantity, Statistic};
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     if let Some(norm) = &project.norm {
         for (index, room) in world.rooms.iter().enumerate() {
-            let required = of_norm(norm, world, room, &plan.rooms[index], errors);
+            let required = of_norm(norm, room, &plan.rooms[index], errors);
             plan.rooms[index].requirements.extend(required);
         }
     }
@@ -64,7 +64,6 @@ fn subject(world: &World, plan: &Plan, requirement: &crate::project::CustomRequi
 
 fn of_norm(
     norm: &Norm,
-    world: &World,
     room: &Room,
     planned: &PlannedRoom,
     errors: &mut Vec<PlanError>,
@@ -80,7 +79,7 @@ fn of_norm(
             no_row(reference, format!("area \"{}\"", area.name));
             continue;
         };
-        let Some(zone) = zone_of(world, room, area) else { continue };
+        let Some(zone) = zone_of(room, area) else { continue };
         for limit in standard.requirements(row).iter().filter(|limit| limit.zone == zone) {
             required.push(on_area(standard, reference, limit, place, area));
         }
@@ -95,7 +94,7 @@ fn of_norm(
             (Zone::Room, Quantity::Ugr) => Subject::UgrTable(standard.application.ugr_shr.value),
             (Zone::Declared, Quantity::ColourRendering) => Subject::ColourRendering,
             (Zone::Room | Zone::Declared, _) => Subject::Missing("gershun does not compute this quantity".into()),
-            (zone, _) if !has_zone(world, room, planned, zone) && limit.statistic == Statistic::Mean => {
+            (zone, _) if !has_zone(room, planned, zone) && limit.statistic == Statistic::Mean => {
                 Subject::Missing(format!("the project lists no {} in this room", zone_name(zone)))
             }
             _ => continue,
@@ -152,7 +151,7 @@ fn on_area(
 }
 
 /// Zone of the norm that an area plays; `None` for surfaces that are neither wall nor ceiling.
-fn zone_of(_world: &World, room: &Room, area: &PlannedArea) -> Option<Zone> {
+fn zone_of(room: &Room, area: &PlannedArea) -> Option<Zone> {
     match area.kind {
         AreaKind::Task => Some(Zone::Task),
         AreaKind::Surrounding => Some(Zone::Surrounding),
@@ -164,7 +163,7 @@ fn zone_of(_world: &World, room: &Room, area: &PlannedArea) -> Option<Zone> {
             let high = area.grid.points.iter().all(|point| (point.position.z - top).abs() < 0.3);
             if normal.z < -0.99 && high {
                 Some(Zone::Ceiling)
-            } else if normal.z.abs() < 0.01 {
+            } else if normal.z.abs() < 0.01 && area.grid.points.iter().all(|p| on_outline(room, p.position)) {
                 Some(Zone::Walls)
             } else {
                 None
@@ -173,10 +172,20 @@ fn zone_of(_world: &World, room: &Room, area: &PlannedArea) -> Option<Zone> {
     }
 }
 
-fn has_zone(world: &World, room: &Room, planned: &PlannedRoom, zone: Zone) -> bool {
+/// Whether a point stands at a wall of the room: a board or a screen elsewhere is no wall.
+fn on_outline(room: &Room, at: glam::DVec3) -> bool {
+    let p = glam::DVec2::new(at.x, at.y);
+    (0..room.footprint.len()).any(|index| {
+        let (a, b) = (room.footprint[index], room.footprint[(index + 1) % room.footprint.len()]);
+        let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        p.distance(a + (b - a) * t) < 0.3
+    })
+}
+
+fn has_zone(room: &Room, planned: &PlannedRoom, zone: Zone) -> bool {
     // The zones beyond the task are optional where the task area is the whole room.
     let optional = matches!(zone, Zone::Surrounding | Zone::Background);
-    optional || planned.areas.iter().any(|area| zone_of(world, room, area) == Some(zone))
+    optional || planned.areas.iter().any(|area| zone_of(room, area) == Some(zone))
 }
 
 fn zone_name(zone: Zone) -> &'static str {

@@ -1,0 +1,428 @@
+//! Plan and sheets → requirements with verdicts, and everything the report shows.
+
+use glam::{DVec2, DVec3};
+
+use crate::emitters::{Emitters, Seen};
+use crate::judge::{self, Judged};
+use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
+use crate::outcome::{
+    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, Value, Verdict, ViewpointOutcome,
+};
+use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
+use crate::project::{Compare, Project, Room, World};
+use crate::quantity::{Quantity, Statistic};
+use crate::units::Undefined;
+
+/// Everything that is measured on one world after some blocks.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// The project.
+    pub project: &'a Project,
+    /// The world.
+    pub world: &'a World,
+    /// Its plan.
+    pub plan: &'a Plan,
+    /// Its answers so far.
+    pub answers: Answers<'a>,
+    /// Its luminaires.
+    pub emitters: &'a Emitters<'a>,
+    /// What each planned view of each room sees, computed once.
+    pub seen: &'a [Vec<Vec<Seen>>],
+    /// Risk of an individual interval.
+    pub alpha: f64,
+    /// Risk of all requirements of a room at this look.
+    pub joint_alpha: f64,
+}
+
+/// The sources seen by every planned view.
+pub fn seen_by_views(plan: &Plan, emitters: &Emitters, seed: u64) -> Vec<Vec<Vec<Seen>>> {
+    use rayon::prelude::*;
+    plan.rooms
+        .iter()
+        .map(|room| room.views.par_iter().map(|view| crate::emitters::seen_from(emitters, view.eye, seed)).collect())
+        .collect()
+}
+
+impl Context<'_> {
+    /// All requirements of a room, judged.
+    pub fn requirements(&self, room: usize) -> Vec<Requirement> {
+        let planned = &self.plan.rooms[room];
+        let family = planned.requirements.iter().filter(|r| is_computed(&r.subject)).count().max(1);
+        let alpha = self.joint_alpha / family as f64;
+        planned.requirements.iter().map(|requirement| self.requirement(room, requirement, alpha)).collect()
+    }
+
+    fn requirement(&self, room: usize, planned: &PlannedRequirement, alpha: f64) -> Requirement {
+        let compare = self.project.norm.as_ref().map_or(Compare::Exact, |norm| norm.compare);
+        let (gauged, note, forced) = self.gauge(room, planned, alpha);
+        let other = if compare == Compare::Exact { Compare::Printed } else { Compare::Exact };
+        let judge = |compare| judge::judge(&gauged, planned.quantity, planned.statistic, planned.bound, compare);
+        let Judged { verdict, at_the_limit, margin } = judge(compare);
+        let verdict = match (forced, verdict) {
+            (Some(Verdict::Declared), Verdict::Fail) => Verdict::Fail,
+            (Some(forced), _) => forced,
+            (None, verdict) => verdict,
+        };
+        let otherwise = judge(other).verdict;
+        Requirement {
+            standard: planned.standard.clone(),
+            clause: planned.clause.clone(),
+            room: self.world.rooms[room].name.clone(),
+            subject: planned.subject_name.clone(),
+            light_scene: self.project.light_scenes[planned.light_scene].name.clone(),
+            quantity: planned.quantity,
+            statistic: planned.statistic,
+            bound: planned.bound,
+            value: gauged.value.clone(),
+            lo_joint: gauged.lo,
+            hi_joint: gauged.hi,
+            margin,
+            verdict,
+            at_the_limit,
+            other_comparison: (forced.is_none() && otherwise != verdict).then_some(otherwise),
+            verified: planned.verified.clone(),
+            note,
+            at_risk: Vec::new(),
+        }
+    }
+
+    /// Value and joint interval, a note, and a verdict that does not come from comparison.
+    fn gauge(&self, room: usize, planned: &PlannedRequirement, alpha: f64) -> (Gauged, String, Option<Verdict>) {
+        let entry = &self.world.rooms[room];
+        match &planned.subject {
+            Subject::Area(place, quantity) => {
+                let weights = self.weights(planned.light_scene, entry, true);
+                let asked = &self.plan.rooms[room].areas[*place].quantities[*quantity];
+                let blocks = area::blocks(&self.answers, asked, &weights);
+                (area::gauge(&blocks, planned.statistic, alpha), "maintained".into(), None)
+            }
+            Subject::Viewpoint(viewpoint) => {
+                (self.worst_view(room, *viewpoint, planned.light_scene, alpha), view::CONVENTION.into(), None)
+            }
+            Subject::UgrTable(shr) => {
+                let value = room_ugr::worst(&room_ugr::table(self.world, entry, *shr));
+                let note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
+                (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
+            }
+            Subject::ColourRendering => {
+                let declared = entry.luminaires.iter().map(|&l| self.world.scene.luminaires[l].kind.declared_ra);
+                let least = declared.collect::<Option<Vec<f64>>>().filter(|all| !all.is_empty());
+                match least {
+                    Some(all) => {
+                        let least = all.into_iter().fold(f64::INFINITY, f64::min);
+                        (Gauged::exact(least), "declared, not computed".into(), Some(Verdict::Declared))
+                    }
+                    None => {
+                        let reason = Undefined::because("not declared for every luminaire type ([declared] ra)");
+                        (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
+                    }
+                }
+            }
+            Subject::Missing(reason) => {
+                (Gauged::undefined(Undefined::because(reason.clone())), String::new(), Some(Verdict::NotAssessed))
+            }
+        }
+    }
+
+    /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
+    fn worst_view(&self, room: usize, viewpoint: usize, light_scene: usize, alpha: f64) -> Gauged {
+        let views: Vec<usize> = (0..self.plan.rooms[room].views.len())
+            .filter(|&index| self.plan.rooms[room].views[index].viewpoint == viewpoint)
+            .collect();
+        let each = alpha / views.len().max(1) as f64;
+        let mut worst: Option<Gauged> = None;
+        for &index in &views {
+            let gauged = self.glare(room, index, light_scene, each).ugr;
+            if gauged.value.is_err() {
+                return gauged;
+            }
+            let value = gauged.value.clone().unwrap_or(f64::NAN);
+            worst = Some(match worst {
+                None => gauged,
+                Some(known) => {
+                    let (lo, hi) = (known.lo.max(gauged.lo), known.hi.max(gauged.hi));
+                    let greater = value > known.value.clone().unwrap_or(f64::NAN);
+                    Gauged { lo, hi, ..if greater { gauged } else { known } }
+                }
+            });
+        }
+        worst.unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
+    }
+
+    fn glare(&self, room: usize, index: usize, light_scene: usize, alpha: f64) -> view::Glare {
+        let planned = &self.plan.rooms[room].views[index];
+        let weights = self.weights(light_scene, &self.world.rooms[room], false);
+        let seen = &self.seen[room][index];
+        view::glare(&self.answers, self.emitters, seen, planned.direction, planned.row, &weights, alpha)
+    }
+
+    fn weights(&self, light_scene: usize, room: &Room, maintained: bool) -> Vec<f64> {
+        measure::weights(self.world, &self.project.light_scenes[light_scene], room, maintained)
+    }
+
+    /// Whether every requested value has reached a relative standard error `r` (UGR: 3.5 r).
+    pub fn accurate(&self, r: f64) -> bool {
+        (0..self.plan.rooms.len()).all(|room| {
+            let entry = &self.world.rooms[room];
+            let planned = &self.plan.rooms[room];
+            let areas = planned.areas.iter().all(|area| {
+                let weights = self.weights(area.light_scene, entry, true);
+                area.quantities.iter().all(|quantity| fine(&area::blocks(&self.answers, quantity, &weights), r))
+            });
+            let views = (0..planned.views.len()).all(|index| {
+                let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha).ugr;
+                ugr.value.is_err() || ugr.se <= 3.5 * r
+            });
+            areas && views
+        })
+    }
+
+    /// All that the report shows of a room, and the room's values in canonical order.
+    pub fn room(&self, index: usize) -> (RoomOutcome, Vec<Value>) {
+        let room = &self.world.rooms[index];
+        let planned = &self.plan.rooms[index];
+        let mut values = Vec::new();
+        let areas = planned.areas.iter().map(|area| self.area(room, area, &mut values)).collect();
+        let viewpoints = self.viewpoints(index, planned, &mut values);
+        let scene = &self.world.scene;
+        let luminaires = room.luminaires.iter().map(|&l| luminaire(&scene.luminaires[l])).collect();
+        let shr = self.project.norm.as_ref().map_or(0.25, |norm| norm.standard.application.ugr_shr.value);
+        let flux = self.flux(room, planned, &mut values);
+        let outcome = RoomOutcome {
+            name: room.name.clone(),
+            number: room.number.clone(),
+            footprint: room.footprint.clone(),
+            floor_m: room.floor_m,
+            height_m: room.height_m,
+            row: room.row.clone().or_else(|| self.project.norm.as_ref().and_then(|norm| norm.row.clone())),
+            reflectances: room.reflectances,
+            areas,
+            viewpoints,
+            luminaires,
+            types: types(self.world, room),
+            furniture: furniture(self.world, room),
+            flux,
+            ugr_table: room_ugr::table(self.world, room, shr),
+        };
+        (outcome, values)
+    }
+
+    fn area(&self, room: &Room, area: &crate::plan::PlannedArea, values: &mut Vec<Value>) -> AreaOutcome {
+        let mut fields = Vec::new();
+        for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
+            let weights = self.weights(number, room, true);
+            for entry in &area.quantities {
+                fields.push(PointField {
+                    light_scene: light_scene.name.clone(),
+                    quantity: entry.quantity,
+                    maintained: true,
+                    points: area::points(&self.answers, entry, &weights, self.alpha),
+                });
+                let blocks = area::blocks(&self.answers, entry, &weights);
+                for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max, Statistic::U0, Statistic::Ud] {
+                    let gauged = area::gauge(&blocks, statistic, self.alpha);
+                    let ratio = matches!(statistic, Statistic::U0 | Statistic::Ud);
+                    values.push(Value {
+                        room: room.name.clone(),
+                        subject: area.name.clone(),
+                        light_scene: light_scene.name.clone(),
+                        quantity: entry.quantity.key(),
+                        statistic: statistic.key().into(),
+                        location: gauged.place.map(|place| area.grid.points[place].position),
+                        unit: if ratio { "1" } else { entry.quantity.unit() }.into(),
+                        estimate: gauged.interval(),
+                        n: self.answers.blocks(),
+                    });
+                }
+            }
+        }
+        AreaOutcome {
+            name: area.name.clone(),
+            kind: area.kind,
+            of: area.of.clone(),
+            row: area.row.clone(),
+            grid: area.grid.clone(),
+            fields,
+        }
+    }
+
+    fn viewpoints(&self, room: usize, planned: &PlannedRoom, values: &mut Vec<Value>) -> Vec<ViewpointOutcome> {
+        let mut outcomes = Vec::new();
+        for (index, entry) in planned.views.iter().enumerate() {
+            for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
+                let glare = self.glare(room, index, number, self.alpha);
+                let d = entry.direction;
+                let azimuth_deg = d.y.atan2(d.x).to_degrees();
+                values.push(Value {
+                    room: self.world.rooms[room].name.clone(),
+                    subject: entry.name.clone(),
+                    light_scene: light_scene.name.clone(),
+                    quantity: Quantity::Ugr.key(),
+                    statistic: Statistic::Value.key().into(),
+                    location: Some(entry.eye),
+                    unit: "1".into(),
+                    estimate: glare.ugr.interval(),
+                    n: self.answers.blocks(),
+                });
+                outcomes.push(ViewpointOutcome {
+                    name: entry.name.clone(),
+                    light_scene: light_scene.name.clone(),
+                    eye: entry.eye,
+                    direction: d,
+                    azimuth_deg: if azimuth_deg == 0.0 { 0.0 } else { azimuth_deg },
+                    tilt_deg: d.z.clamp(-1.0, 1.0).asin().to_degrees(),
+                    ugr: glare.ugr.interval(),
+                    convention: view::CONVENTION.into(),
+                    background_cd_m2: glare.background_cd_m2,
+                    e_v_lx: glare.e_v_lx,
+                    sources: glare.sources,
+                    notes: glare.notes,
+                });
+            }
+        }
+        outcomes
+    }
+
+    fn flux(&self, room: &Room, planned: &PlannedRoom, values: &mut Vec<Value>) -> Vec<crate::outcome::FluxBalance> {
+        let mut balances = Vec::new();
+        for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
+            let weights = self.weights(number, room, false);
+            let tasks = self.flux_on_tasks(planned, &weights);
+            let balance =
+                flux::balance(&self.answers, &self.world.scene, &light_scene.name, &weights, tasks.as_deref(), self.alpha);
+            if let Some(balance) = balance {
+                if let Some(utilisation) = balance.utilisation {
+                    values.push(Value {
+                        room: room.name.clone(),
+                        subject: room.name.clone(),
+                        light_scene: light_scene.name.clone(),
+                        quantity: "utilisation".into(),
+                        statistic: Statistic::Value.key().into(),
+                        location: None,
+                        unit: "1".into(),
+                        estimate: Ok(utilisation),
+                        n: self.answers.blocks(),
+                    });
+                }
+                balances.push(balance);
+            }
+        }
+        balances
+    }
+
+    /// Block values of Σ Ē·A over the task areas, lm.
+    fn flux_on_tasks(&self, planned: &PlannedRoom, weights: &[f64]) -> Option<Vec<f64>> {
+        let mut sum: Option<Vec<f64>> = None;
+        for area in planned.areas.iter().filter(|area| area.kind == crate::project::AreaKind::Task) {
+            let entry = area.quantities.iter().find(|q| matches!(q.quantity, Quantity::Horizontal | Quantity::Normal))?;
+            let blocks = area::blocks(&self.answers, entry, weights);
+            let cell_m2 = area.grid.spacing_m[0] * area.grid.spacing_m[1];
+            let total = sum.get_or_insert_with(|| vec![0.0; self.answers.blocks()]);
+            for point in &blocks.values {
+                for (total, value) in total.iter_mut().zip(point) {
+                    *total += value * cell_m2;
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// RMS over points of se/value and the relative errors of the mean within `r`.
+fn fine(blocks: &area::Blocks, r: f64) -> bool {
+    let relative = |values: &[f64]| {
+        let estimate = crate::estimate::Estimate::from_blocks(values);
+        if estimate.se > 0.0 { estimate.se / estimate.value.abs() } else { 0.0 }
+    };
+    let count = blocks.values.len().max(1) as f64;
+    let square = blocks.values.iter().map(|point| relative(point).powi(2)).sum::<f64>() / count;
+    let statistics = [Statistic::Mean, Statistic::Min, Statistic::Max].map(|s| area::gauge(blocks, s, 0.5));
+    let all = statistics.iter().all(|g| g.value.as_ref().map_or(true, |v| !(g.se > r * v.abs())));
+    square.sqrt() <= r && all
+}
+
+fn is_computed(subject: &Subject) -> bool {
+    matches!(subject, Subject::Area(..) | Subject::Viewpoint(_))
+}
+
+fn luminaire(entry: &crate::luminaire::Luminaire) -> LuminaireOutcome {
+    let axes = entry.world_from_luminaire;
+    LuminaireOutcome {
+        kind: entry.kind.name.clone(),
+        group: entry.group.clone(),
+        position: entry.position,
+        outline: entry.kind.opening.outline().iter().map(|&p| entry.position + axes * p).collect(),
+        c0: axes * crate::sphere::from_azimuth_tilt(entry.kind.c0_azimuth_deg, 0.0),
+        aim: entry.beam_axis(),
+    }
+}
+
+fn types(world: &World, room: &Room) -> Vec<TypeOutcome> {
+    let mut types: Vec<TypeOutcome> = Vec::new();
+    for &index in &room.luminaires {
+        let kind = &world.scene.luminaires[index].kind;
+        if let Some(known) = types.iter_mut().find(|known| known.name == kind.name) {
+            known.count += 1;
+            continue;
+        }
+        let m = kind.maintenance;
+        types.push(TypeOutcome {
+            name: kind.name.clone(),
+            description: kind.description.clone(),
+            file: kind.file.clone(),
+            count: 1,
+            flux_lm: kind.flux_lm,
+            rated_flux_lm: kind.rated_flux_lm,
+            power_w: kind.power_w,
+            maintenance_factor: m.factor() * room.rsmf,
+            maintenance: [m.llmf, m.lsf, m.lmf, room.rsmf],
+        });
+    }
+    types
+}
+
+/// Convex outlines in plan of the furniture whose centre lies over the room.
+fn furniture(world: &World, room: &Room) -> Vec<Vec<DVec2>> {
+    let mesh = &world.scene.mesh;
+    let mut corners: Vec<Vec<DVec2>> = vec![Vec::new(); mesh.surfaces.len()];
+    for (index, triangle) in mesh.triangles.iter().enumerate() {
+        if mesh.surfaces[triangle.surface as usize].furniture {
+            corners[triangle.surface as usize].extend(mesh.corners(index).map(|p: DVec3| DVec2::new(p.x, p.y)));
+        }
+    }
+    let (lo, hi) = room
+        .footprint
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    corners
+        .into_iter()
+        .filter(|points| !points.is_empty())
+        .map(hull)
+        .filter(|outline| {
+            let centre = outline.iter().sum::<DVec2>() / outline.len() as f64;
+            outline.len() >= 3 && centre.cmpge(lo).all() && centre.cmple(hi).all()
+        })
+        .collect()
+}
+
+/// Convex hull, counter-clockwise (Andrew's monotone chain).
+fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut chain: Vec<DVec2> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..]
+                && (b - a).perp_dot(p - b) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut outline = half(&mut points.iter().copied());
+    outline.extend(half(&mut points.iter().rev().copied()));
+    outline
+}

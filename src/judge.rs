@@ -1,0 +1,112 @@
+//! Measured × limit → verdict. A verdict is certain when the family-wise interval lies on one side
+//! of the limit; within the indifference margin the value decides and is called "at the limit".
+
+use crate::measure::Gauged;
+use crate::outcome::{Bound, Verdict};
+use crate::project::Compare;
+use crate::quantity::{Quantity, Statistic};
+
+/// Share of a limit within which a value is "at the limit".
+pub const INDIFFERENCE: f64 = 0.005;
+/// The same for UGR, in units of UGR.
+pub const INDIFFERENCE_UGR: f64 = 0.1;
+
+/// A verdict with what explains it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Decided by the value within the indifference margin.
+    pub at_the_limit: bool,
+    /// Distance to the limit, positive when it complies: relative, for UGR in its units.
+    pub margin: Option<f64>,
+}
+
+/// Judges a gauged quantity whose interval is the joint one.
+pub fn judge(gauged: &Gauged, quantity: Quantity, statistic: Statistic, bound: Bound, compare: Compare) -> Judged {
+    let Ok(value) = gauged.value else {
+        return Judged { verdict: Verdict::Undefined, at_the_limit: false, margin: None };
+    };
+    let round = |x: f64| match compare {
+        Compare::Exact => x,
+        Compare::Printed => printed(x, quantity, statistic),
+    };
+    let (limit, sign) = match bound {
+        Bound::Min(limit) => (limit, 1.0),
+        Bound::Max(limit) => (limit, -1.0),
+    };
+    let scale = if quantity == Quantity::Ugr { 1.0 } else { limit.abs().max(f64::MIN_POSITIVE) };
+    let margin = sign * (value - limit) / scale;
+    let complies = |x: f64| sign * (round(x) - limit) >= 0.0;
+    let by_value = if complies(value) { Verdict::Pass } else { Verdict::Fail };
+    let (certain_pass, certain_fail) = (complies(gauged.lo) && complies(gauged.hi), !complies(gauged.lo) && !complies(gauged.hi));
+    let indifference = if quantity == Quantity::Ugr { INDIFFERENCE_UGR } else { INDIFFERENCE * limit.abs() };
+    let near = (gauged.lo - limit).abs() <= indifference && (gauged.hi - limit).abs() <= indifference;
+    let verdict = if certain_pass || certain_fail || near { by_value } else { Verdict::Undecided };
+    Judged { verdict, at_the_limit: near, margin: Some(margin) }
+}
+
+/// A value as norms print it, rounded half-up: illuminance to three significant figures, ratios to
+/// 0.01, UGR to 0.1.
+pub fn printed(value: f64, quantity: Quantity, statistic: Statistic) -> f64 {
+    let to = |step: f64| ((value / step) + 0.5 + 1e-12).floor() * step;
+    if matches!(statistic, Statistic::U0 | Statistic::Ud) || quantity == Quantity::Modelling {
+        to(0.01)
+    } else if quantity == Quantity::Ugr {
+        to(0.1)
+    } else if value > 0.0 && value.is_finite() {
+        to(10f64.powi(value.log10().floor() as i32 - 2))
+    } else {
+        value
+    }
+}
+
+/// Risk spent at look `look` (1-based): α/(k(k+1)), which sums to α over all looks.
+pub fn look_alpha(alpha: f64, look: u32) -> f64 {
+    let k = f64::from(look);
+    alpha / (k * (k + 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gauged(value: f64, lo: f64, hi: f64) -> Gauged {
+        Gauged { value: Ok(value), se: 1.0, lo, hi, place: None }
+    }
+
+    fn verdict(g: &Gauged, bound: Bound) -> (Verdict, bool) {
+        let judged = judge(g, Quantity::Horizontal, Statistic::Mean, bound, Compare::Exact);
+        (judged.verdict, judged.at_the_limit)
+    }
+
+    #[test]
+    fn intervals_decide_and_overlap_does_not() {
+        assert_eq!(verdict(&gauged(520.0, 505.0, 535.0), Bound::Min(500.0)), (Verdict::Pass, false));
+        assert_eq!(verdict(&gauged(480.0, 465.0, 495.0), Bound::Min(500.0)), (Verdict::Fail, false));
+        assert_eq!(verdict(&gauged(505.0, 490.0, 520.0), Bound::Min(500.0)), (Verdict::Undecided, false));
+        assert_eq!(verdict(&gauged(520.0, 505.0, 535.0), Bound::Max(500.0)), (Verdict::Fail, false));
+    }
+
+    #[test]
+    fn within_half_a_percent_the_value_decides_and_says_so() {
+        assert_eq!(verdict(&gauged(500.2, 499.0, 501.4), Bound::Min(500.0)), (Verdict::Pass, true));
+        assert_eq!(verdict(&gauged(499.8, 499.0, 500.6), Bound::Min(500.0)), (Verdict::Fail, true));
+    }
+
+    #[test]
+    fn printing_rounds_half_up_and_may_change_the_verdict() {
+        assert!((printed(499.5, Quantity::Horizontal, Statistic::Mean) - 500.0).abs() < 1e-9);
+        assert!((printed(0.595, Quantity::Horizontal, Statistic::U0) - 0.6).abs() < 1e-9);
+        assert!((printed(19.04, Quantity::Ugr, Statistic::Value) - 19.0).abs() < 1e-9);
+        let g = gauged(19.04, 19.03, 19.049);
+        let of = |compare| judge(&g, Quantity::Ugr, Statistic::Value, Bound::Max(19.0), compare).verdict;
+        assert_eq!((of(Compare::Exact), of(Compare::Printed)), (Verdict::Fail, Verdict::Pass));
+    }
+
+    #[test]
+    fn risks_of_all_looks_sum_to_alpha() {
+        let sum: f64 = (1..100_000).map(|look| look_alpha(0.05, look)).sum();
+        assert!(sum < 0.05 && sum > 0.0499);
+    }
+}

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use gershun::geometry::mesh::Mesh;
 use gershun::luminaire::{Luminaire, LuminaireType, Maintenance, orientation};
-use gershun::material::{Bsdf, Material};
+use gershun::material::{Bsdf, Material, Pane};
 use gershun::photometry::{IntensityDistribution, Opening};
 use gershun::query::{Demand, Kernel, Receiver};
 use gershun::scene::Scene;
@@ -101,4 +101,57 @@ pub fn cpu_seconds() -> f64 {
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
     let ticks = |index: usize| fields.get(index).and_then(|f| f.parse::<f64>().ok()).unwrap_or(0.0);
     (ticks(11) + ticks(12)) / 100.0
+}
+
+/// A room with furniture, a mirror, a glazed screen, an opal screen, two kinds of lamps.
+pub fn furnished() -> Scene {
+    let size = DVec3::new(6.0, 4.0, 2.8);
+    let mut mesh = room(size);
+    let solid = |mesh: &mut Mesh, name: &str, material, lo: [f64; 3], hi: [f64; 3]| {
+        let surface = mesh.add_surface(name, material, true);
+        let (a, b) = (DVec3::from_array(lo), DVec3::from_array(hi));
+        let p = |x: bool, y: bool, z: bool| DVec3::new(if x { b.x } else { a.x }, if y { b.y } else { a.y }, if z { b.z } else { a.z });
+        let (f, t) = (false, true);
+        for corners in [
+            [p(f, f, f), p(f, t, f), p(t, t, f), p(t, f, f)],
+            [p(f, f, t), p(t, f, t), p(t, t, t), p(f, t, t)],
+            [p(f, f, f), p(t, f, f), p(t, f, t), p(f, f, t)],
+            [p(f, t, f), p(f, t, t), p(t, t, t), p(t, t, f)],
+            [p(f, f, f), p(f, f, t), p(f, t, t), p(f, t, f)],
+            [p(t, f, f), p(t, t, f), p(t, t, t), p(t, f, t)],
+        ] {
+            mesh.add_quad(corners, surface);
+        }
+    };
+    for (i, x) in [1.0, 2.8, 4.6].into_iter().enumerate() {
+        solid(&mut mesh, &format!("desk {i}"), 3, [x - 0.7, 1.0, 0.70], [x + 0.7, 1.8, 0.74]);
+        solid(&mut mesh, &format!("cabinet {i}"), 3, [x - 0.4, 3.5, 0.01], [x + 0.4, 3.9, 1.6]);
+    }
+    let sheet = |mesh: &mut Mesh, name: &str, material, corners: [[f64; 3]; 4]| {
+        let surface = mesh.add_surface(name, material, true);
+        mesh.add_quad(corners.map(DVec3::from_array), surface);
+    };
+    sheet(&mut mesh, "mirror", 4, [[0.01, 0.8, 0.5], [0.01, 2.6, 0.5], [0.01, 2.6, 2.0], [0.01, 0.8, 2.0]]);
+    sheet(&mut mesh, "pane", 5, [[3.8, 0.0, 0.0], [3.8, 2.2, 0.0], [3.8, 2.2, 2.2], [3.8, 0.0, 2.2]]);
+    sheet(&mut mesh, "opal", 6, [[2.0, 2.2, 0.3], [3.4, 2.2, 0.3], [3.4, 2.2, 1.9], [2.0, 2.2, 1.9]]);
+    let materials = vec![
+        lambert("floor", 0.25),
+        lambert("walls", 0.6),
+        lambert("ceiling", 0.8),
+        lambert("desk", 0.45),
+        Material { name: "mirror".into(), bsdf: Bsdf::Mirror { reflectance: 0.9 } },
+        Material { name: "pane".into(), bsdf: Bsdf::Glass(Pane::new(0.85)) },
+        Material { name: "opal".into(), bsdf: Bsdf::Opal { reflectance: 0.4, transmittance: 0.5 } },
+    ];
+    let mut lamps = Vec::new();
+    for x in [1.5, 4.5] {
+        for y in [1.0, 3.0] {
+            lamps.push(panel(3600.0, 0.6, DVec3::new(x, y, 2.79)));
+        }
+    }
+    let disc = Opening::Disc { diameter_m: 0.4, height_m: 0.0 };
+    let mut uplight = lamp(IntensityDistribution::isotropic(Lumens(1500.0)), disc, DVec3::new(3.0, 2.0, 2.2));
+    uplight.group = "B".into();
+    lamps.push(uplight);
+    Scene::new(mesh, materials, lamps).unwrap()
 }

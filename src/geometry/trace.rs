@@ -4,6 +4,9 @@
 //!
 //! Watertight test: Woop, Benthin, Wald 2013 (JCGT 2(1)): edge functions of a shared edge are the
 //! same numbers with opposite sign for both triangles, so no ray passes between them.
+#![allow(clippy::inline_always, reason = "the traversal is compiled once per SIMD level, whole")]
+
+use std::mem::MaybeUninit;
 
 use glam::DVec3;
 use obvhs::BvhBuildParams;
@@ -232,25 +235,11 @@ impl Tracer {
     }
 
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "compiled once per SIMD level")]
     fn closest_body(&self, ray: &Prepared, direction: DVec3, blind: &[u32]) -> Option<Hit> {
-        let mut best = f64::INFINITY;
-        let mut found: Option<(u32, [f64; 2])> = None;
-        self.traverse(ray, &mut best, |pack, best| {
-            let (distance, u, v, hit) = meet(pack, ray);
-            for lane in 0..LANES {
-                let (t, id) = (distance[lane], pack.id[lane]);
-                let nearer =
-                    t < *best || (t <= *best && found.is_some_and(|(known, _)| id < known));
-                if hit[lane] && nearer && !blind.contains(&self.surface_of[id as usize]) {
-                    *best = t;
-                    found = Some((id, [u[lane], v[lane]]));
-                }
-            }
-            false
-        });
-        found.map(|(triangle, barycentric)| Hit {
-            distance_m: best,
+        let mut nearest = Nearest { tracer: self, blind, reach: f64::INFINITY, found: None };
+        self.traverse(ray, &mut nearest);
+        nearest.found.map(|(triangle, barycentric)| Hit {
+            distance_m: nearest.reach,
             triangle,
             barycentric,
             front: self.normals[triangle as usize].dot(direction) < 0.0,
@@ -258,84 +247,52 @@ impl Tracer {
     }
 
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "compiled once per SIMD level")]
-    fn transmittance_body(
-        &self,
-        ray: &Prepared,
-        direction: DVec3,
-        distance_m: f64,
-        blind: &[u32],
-    ) -> f64 {
-        let mut passed = 1.0;
-        let mut reach = distance_m;
-        self.traverse(ray, &mut reach, |pack, reach| {
-            let (distance, _, _, hit) = meet(pack, ray);
-            for lane in 0..LANES {
-                if hit[lane] && distance[lane] < *reach {
-                    let id = pack.id[lane] as usize;
-                    if blind.contains(&self.surface_of[id]) {
-                        continue;
-                    }
-                    let pane = self.pane_of[id];
-                    if pane == OPAQUE {
-                        passed = 0.0;
-                        return true;
-                    }
-                    let cos = self.normals[id].dot(direction).abs();
-                    passed *= self.panes[pane as usize].transmittance(cos);
-                }
-            }
-            false
-        });
-        passed
+    fn transmittance_body(&self, ray: &Prepared, direction: DVec3, distance_m: f64, blind: &[u32]) -> f64 {
+        let mut passing = Passing { tracer: self, blind, reach: distance_m, direction, passed: 1.0 };
+        self.traverse(ray, &mut passing);
+        passing.passed
     }
 
-    /// Visits packs whose boxes the ray meets before `reach`, nearest first; `visit` may shorten
-    /// `reach` and ends the traversal by returning true.
+    /// Visits packs whose boxes the ray meets within the visitor's reach, nearest first, until the
+    /// visitor has seen enough.
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "compiled once per SIMD level")]
-    fn traverse(
-        &self,
-        ray: &Prepared,
-        reach: &mut f64,
-        visit: impl FnMut(&Pack, &mut f64) -> bool,
-    ) {
+    fn traverse(&self, ray: &Prepared, visitor: &mut impl Visitor) {
         if self.stack_need <= SHALLOW {
-            self.traverse_with::<SHALLOW>(ray, reach, visit);
+            self.traverse_with::<SHALLOW>(ray, visitor);
         } else {
-            self.traverse_with::<DEEP>(ray, reach, visit);
+            self.traverse_with::<DEEP>(ray, visitor);
         }
     }
 
     #[inline(always)]
-    #[allow(clippy::inline_always, reason = "compiled once per SIMD level")]
-    fn traverse_with<const STACK: usize>(
-        &self,
-        ray: &Prepared,
-        reach: &mut f64,
-        mut visit: impl FnMut(&Pack, &mut f64) -> bool,
-    ) {
-        let mut stack = [(0u32, 0f32); STACK];
+    fn traverse_with<const STACK: usize>(&self, ray: &Prepared, visitor: &mut impl Visitor) {
+        // Not initialised: clearing it would cost as much as a short traversal.
+        let mut stack = [const { MaybeUninit::<(u32, f32)>::uninit() }; STACK];
         let mut depth = 0;
         let mut current = 0u32;
         loop {
             if current & LEAF != 0 {
-                if visit(&self.packs[(current & !LEAF) as usize], reach) {
+                if visitor.visit(&self.packs[(current & !LEAF) as usize], ray) {
                     return;
                 }
             } else {
                 let node = &self.nodes[current as usize];
-                let limit = (*reach * 1.000_001) as f32;
-                let (near, far) = slabs(node, ray);
+                let limit = (visitor.reach() * 1.000_001) as f32;
+                let (near, met) = slabs(node, ray, limit);
                 let first = depth;
                 for lane in 0..WIDTH {
-                    if near[lane] <= far[lane] && near[lane] <= limit && node.child[lane] != EMPTY {
+                    if met[lane] && node.child[lane] != EMPTY {
                         let mut place = depth;
-                        while place > first && stack[place - 1].1 < near[lane] {
-                            stack[place] = stack[place - 1];
+                        while place > first {
+                            // SAFETY: entries below `depth` were written by this loop.
+                            let below = unsafe { stack[place - 1].assume_init() };
+                            if !(below.1 < near[lane]) {
+                                break;
+                            }
+                            stack[place].write(below);
                             place -= 1;
                         }
-                        stack[place] = (node.child[lane], near[lane]);
+                        stack[place].write((node.child[lane], near[lane]));
                         depth += 1;
                     }
                 }
@@ -345,8 +302,9 @@ impl Tracer {
                     return;
                 }
                 depth -= 1;
-                let (next, near) = stack[depth];
-                if f64::from(near) <= *reach * 1.000_001 {
+                // SAFETY: entries below the former `depth` were written above.
+                let (next, near) = unsafe { stack[depth].assume_init() };
+                if f64::from(near) <= visitor.reach() * 1.000_001 {
                     current = next;
                     break;
                 }
@@ -433,6 +391,87 @@ impl Tracer {
     }
 }
 
+/// What a traversal does at a leaf.
+trait Visitor {
+    /// Distance beyond which nothing matters.
+    fn reach(&self) -> f64;
+    /// Takes in four triangles; true ends the traversal.
+    fn visit(&mut self, pack: &Pack, ray: &Prepared) -> bool;
+}
+
+/// Looks for the nearest hit; among equal distances the smallest index, whatever the order of visits.
+struct Nearest<'a> {
+    tracer: &'a Tracer,
+    blind: &'a [u32],
+    reach: f64,
+    found: Option<(u32, [f64; 2])>,
+}
+
+impl Visitor for Nearest<'_> {
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, pack: &Pack, ray: &Prepared) -> bool {
+        let (distance, u, v, hit) = meet(pack, ray);
+        for lane in 0..LANES {
+            if hit[lane] && distance[lane] <= self.reach {
+                let (t, id) = (distance[lane], pack.id[lane]);
+                let nearer = t < self.reach || self.found.is_none_or(|(known, _)| id < known);
+                if nearer && !is_blind(self.blind, self.tracer, id) {
+                    self.reach = t;
+                    self.found = Some((id, [u[lane], v[lane]]));
+                }
+            }
+        }
+        false
+    }
+}
+
+/// Multiplies the transmittances of panes on the way; anything opaque ends it.
+struct Passing<'a> {
+    tracer: &'a Tracer,
+    blind: &'a [u32],
+    reach: f64,
+    direction: DVec3,
+    passed: f64,
+}
+
+impl Visitor for Passing<'_> {
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, pack: &Pack, ray: &Prepared) -> bool {
+        let (distance, _, _, hit) = meet(pack, ray);
+        for lane in 0..LANES {
+            if hit[lane] && distance[lane] < self.reach {
+                let id = pack.id[lane];
+                if is_blind(self.blind, self.tracer, id) {
+                    continue;
+                }
+                let pane = self.tracer.pane_of[id as usize];
+                if pane == OPAQUE {
+                    self.passed = 0.0;
+                    return true;
+                }
+                let cos = self.tracer.normals[id as usize].dot(self.direction).abs();
+                self.passed *= self.tracer.panes[pane as usize].transmittance(cos);
+            }
+        }
+        false
+    }
+}
+
+#[inline(always)]
+fn is_blind(blind: &[u32], tracer: &Tracer, triangle: u32) -> bool {
+    !blind.is_empty() && blind.contains(&tracer.surface_of[triangle as usize])
+}
+
 impl Node {
     const EMPTY: Self = Self {
         lo: [[f32::INFINITY; WIDTH]; 3],
@@ -463,35 +502,30 @@ impl Pack {
     }
 }
 
+/// Entry distances of the eight boxes and whether each is met before `limit`.
 #[inline(always)]
-#[allow(clippy::inline_always, reason = "compiled once per SIMD level")]
-fn slabs(node: &Node, ray: &Prepared) -> ([f32; WIDTH], [f32; WIDTH]) {
+fn slabs(node: &Node, ray: &Prepared, limit: f32) -> ([f32; WIDTH], [bool; WIDTH]) {
     let mut near = [0f32; WIDTH];
-    let mut far = [f32::INFINITY; WIDTH];
+    let mut far = [limit; WIDTH];
     for axis in 0..3 {
         let (o, inverse) = (ray.origin32[axis], ray.inverse32[axis]);
-        let (lo, hi) = if inverse >= 0.0 {
-            (&node.lo[axis], &node.hi[axis])
-        } else {
-            (&node.hi[axis], &node.lo[axis])
-        };
+        let (lo, hi) = if inverse >= 0.0 { (&node.lo[axis], &node.hi[axis]) } else { (&node.hi[axis], &node.lo[axis]) };
         for lane in 0..WIDTH {
             let enter = (lo[lane] - o) * inverse;
             let leave = (hi[lane] - o) * inverse;
-            near[lane] = if enter > near[lane] {
-                enter
-            } else {
-                near[lane]
-            };
+            near[lane] = if enter > near[lane] { enter } else { near[lane] };
             far[lane] = if leave < far[lane] { leave } else { far[lane] };
         }
     }
-    (near, far)
+    let mut met = [false; WIDTH];
+    for lane in 0..WIDTH {
+        met[lane] = near[lane] <= far[lane];
+    }
+    (near, met)
 }
 
 /// Woop's test on four triangles: distance, weights of the second and third vertex, and hit or not.
 #[inline(always)]
-#[allow(clippy::inline_always, reason = "compiled once per SIMD level")]
 fn meet(pack: &Pack, ray: &Prepared) -> ([f64; LANES], [f64; LANES], [f64; LANES], [bool; LANES]) {
     let [kx, ky, kz] = ray.axes;
     let [sx, sy, sz] = ray.shear;

@@ -12,5 +12,6 @@ pub mod outcome;
 pub mod photometry;
 pub mod project;
 pub mod quantity;
+pub mod report;
 pub mod scene;
 pub mod units;

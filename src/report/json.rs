@@ -1,13 +1,11 @@
-//! result.json and provenance.json. A value that does not exist is `null` beside its reason;
+//! result.json. A value that does not exist is `null` beside its reason;
 //! serde_json writes any number that is not finite as `null`, so NaN cannot reach a file.
 
 use glam::DVec2;
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 
 use super::ReportError;
 use super::sentence::{bound, verdict_key};
-use super::xml::put;
 use crate::outcome::{
     AreaOutcome, Bias, FluxBalance, GlareSourceOutcome, Interval, NormOutcome, Outcome,
     Requirement, RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
@@ -17,7 +15,7 @@ use crate::quantity::{Quantity, Statistic};
 use crate::units::Undefined;
 
 /// Version of the layout of result.json and provenance.json.
-const VERSION: u32 = 1;
+pub const VERSION: u32 = 1;
 
 #[derive(Serialize)]
 struct ResultFile<'a> {
@@ -163,74 +161,6 @@ pub fn result(outcome: &Outcome) -> Result<Vec<u8>, ReportError> {
     })
 }
 
-#[derive(Serialize)]
-struct ProvenanceFile<'a> {
-    version: u32,
-    program: &'static str,
-    program_version: &'static str,
-    seed: u64,
-    method: &'a str,
-    blocks: usize,
-    stopped: &'a str,
-    inputs: &'a [InputFile],
-    files: Vec<FileRow>,
-}
-
-#[derive(Serialize)]
-struct FileRow {
-    path: String,
-    sha256: String,
-}
-
-/// The bytes of provenance.json: what repeats the run, and the files it wrote with their hashes.
-pub fn provenance(outcome: &Outcome, files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ReportError> {
-    bytes(&ProvenanceFile {
-        version: VERSION,
-        program: env!("CARGO_PKG_NAME"),
-        program_version: env!("CARGO_PKG_VERSION"),
-        seed: outcome.solver.seed,
-        method: &outcome.solver.method,
-        blocks: outcome.solver.blocks,
-        stopped: &outcome.solver.stopped,
-        inputs: &outcome.inputs,
-        files: files
-            .iter()
-            .map(|(path, bytes)| FileRow {
-                path: path.clone(),
-                sha256: sha256(bytes),
-            })
-            .collect(),
-    })
-}
-
-/// Paths and hashes that a provenance.json lists; empty if it is not one of ours.
-pub fn listed_files(provenance: &[u8]) -> Vec<(String, String)> {
-    let Ok(file) = serde_json::from_slice::<serde_json::Value>(provenance) else {
-        return Vec::new();
-    };
-    let rows = file["files"]
-        .as_array()
-        .map(Vec::as_slice)
-        .unwrap_or_default();
-    rows.iter()
-        .filter_map(|row| {
-            Some((
-                row["path"].as_str()?.to_owned(),
-                row["sha256"].as_str()?.to_owned(),
-            ))
-        })
-        .collect()
-}
-
-/// SHA-256 in hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    let mut text = String::new();
-    for byte in Sha256::digest(bytes) {
-        put(&mut text, format_args!("{byte:02x}"));
-    }
-    text
-}
-
 /// Unit of a statistic of a quantity; `1` for ratios.
 pub fn unit(quantity: Quantity, statistic: Statistic) -> &'static str {
     match statistic {
@@ -239,7 +169,8 @@ pub fn unit(quantity: Quantity, statistic: Statistic) -> &'static str {
     }
 }
 
-fn bytes(file: &impl Serialize) -> Result<Vec<u8>, ReportError> {
+/// Pretty-printed JSON with a final line feed.
+pub fn bytes(file: &impl Serialize) -> Result<Vec<u8>, ReportError> {
     let mut bytes = serde_json::to_vec_pretty(file)?;
     bytes.push(b'\n');
     Ok(bytes)

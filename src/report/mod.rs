@@ -11,12 +11,14 @@ mod junit;
 mod markup;
 pub mod number;
 mod page;
+mod page_glare;
 mod page_requirements;
 mod page_room;
 mod plan;
 mod plan_sheet;
 mod plan_view;
 mod plan_window;
+mod provenance;
 #[cfg(test)]
 mod sample;
 mod sarif;
@@ -29,6 +31,7 @@ use std::path::{Path, PathBuf};
 
 pub use junit::junit;
 pub use sarif::sarif;
+pub use sentence::overall;
 pub use terminal::{Colour, Style, table};
 pub use words::Lang;
 
@@ -106,7 +109,7 @@ pub fn files(outcome: &Outcome, options: &Options) -> Result<Vec<(String, Vec<u8
         "report.html".to_owned(),
         page::page(outcome, &languages).into_bytes(),
     ));
-    let provenance = json::provenance(outcome, &files)?;
+    let provenance = provenance::provenance(outcome, &files)?;
     files.push((folder::MANIFEST.to_owned(), provenance));
     Ok(files)
 }

@@ -74,8 +74,7 @@ pub fn page(outcome: &Outcome, languages: &[Lang]) -> String {
     format!(
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"{}\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}</title>\n<style>\n{}</style>\n</head>\n<body>\n{switch}{body}</body>\n</html>\n",
         first.code(),
-        css.replace('>', "&gt;")
-            .replace("details&gt;summary", "details summary"),
+        css,
     )
 }
 
@@ -190,57 +189,69 @@ fn rooms(outcome: &Outcome, lang: Lang, many: bool) -> String {
         .rooms
         .iter()
         .zip(&tallies)
-        .map(|(room, tally)| {
-            let verdict = tally.verdict();
-            let said = verdict.map_or(word(lang, Term::NothingRequired), |v| {
-                words::verdict(lang, v)
-            });
-            let tightest = of_room(outcome, room)
-                .filter(|r| r.margin.is_some_and(f64::is_finite))
-                .min_by(|a, b| a.margin.unwrap_or(0.0).total_cmp(&b.margin.unwrap_or(0.0)));
-            let tightest = tightest.map_or("—".to_owned(), |r| {
-                let text = sentence(
-                    lang,
-                    r,
-                    Naming {
-                        room: false,
-                        light_scene: false,
-                    },
-                );
-                format!("{} {}", symbol(&text.symbol), text.margin)
-            });
-            let name = if room.number.is_empty() {
-                room.name.clone()
-            } else {
-                format!("{} {}", room.number, room.name)
-            };
-            vec![
-                escape(&name),
-                format!("{}/{}", tally.pass, tally.judged()),
-                tightest,
-                format!("<span class=\"{}\">{said}</span>", class_of(verdict)),
-            ]
-        })
+        .map(|(room, tally)| room_row(outcome, room, *tally, lang, many))
         .collect();
-    let head =
-        [Term::RoomWord, Term::Pass, Term::Worst, Term::VerdictColumn].map(|term| word(lang, term));
-    let head = [head[0], "✓", head[2], head[3]];
+    let verdict = if many {
+        ""
+    } else {
+        word(lang, Term::VerdictColumn)
+    };
+    let tightest = word(lang, if many { Term::Margin } else { Term::Worst });
+    let head = [word(lang, Term::RoomWord), "✓", tightest, verdict];
     let mut html = format!(
         "{}<p>{line}</p>\n<div class=\"rooms{}\">",
         heading(lang, Term::Rooms),
         if many { " many" } else { "" }
     );
-    // Two tables fill two columns; one table would be cut in the middle without its head.
-    let half = if many {
-        rows.len().div_ceil(2)
-    } else {
-        rows.len()
-    };
-    for part in rows.chunks(half.max(1)) {
+    let columns = if many { 3 } else { 1 };
+    for part in rows.chunks(rows.len().div_ceil(columns).max(1)) {
         html.push_str(&grid("arrw", &head, part));
     }
     html.push_str("</div>\n");
     html
+}
+
+/// A room's line: what it passes, its tightest requirement, and a mark where words have no room.
+fn room_row(
+    outcome: &Outcome,
+    room: &RoomOutcome,
+    tally: Tally,
+    lang: Lang,
+    many: bool,
+) -> Vec<String> {
+    let verdict = tally.verdict();
+    let said = match verdict {
+        None if many => "–",
+        Some(Verdict::Pass) if many => "✓",
+        Some(Verdict::Fail) if many => "✗",
+        Some(_) if many => "?",
+        Some(verdict) => words::verdict(lang, verdict),
+        None => word(lang, Term::NothingRequired),
+    };
+    let tightest = of_room(outcome, room)
+        .filter_map(|r| {
+            r.margin
+                .filter(|margin| margin.is_finite())
+                .map(|margin| (margin, r))
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let tightest = tightest.map_or("—".to_owned(), |(_, r)| {
+        let text = sentence(
+            lang,
+            r,
+            Naming {
+                room: false,
+                light_scene: false,
+            },
+        );
+        format!("{} {}", symbol(&text.symbol), text.margin)
+    });
+    vec![
+        format!("{} {}", escape(&room.number), escape(&room.name)),
+        format!("{}/{}", tally.pass, tally.judged()),
+        tightest,
+        format!("<span class=\"{}\">{said}</span>", class_of(verdict)),
+    ]
 }
 
 fn details(outcome: &Outcome, lang: Lang, many: bool, mut drawings_bytes: usize) -> String {

@@ -66,19 +66,19 @@ pub fn files(outcome: &Outcome, lang: Lang) -> Vec<(String, String)> {
     files
 }
 
-/// A name as part of a file name on any system.
+/// A name as part of a file name on any system: three parts stay below 255 bytes.
 fn file_name(name: &str) -> String {
-    let kept: String = name
-        .chars()
-        .take(40)
-        .map(|c| {
-            if c.is_alphanumeric() || matches!(c, '-' | '_') {
-                c
-            } else {
-                '_'
-            }
-        })
-        .collect();
+    let mut kept = String::new();
+    for c in name.chars() {
+        if kept.len() + c.len_utf8() > 60 {
+            break;
+        }
+        kept.push(if c.is_alphanumeric() || matches!(c, '-' | '_') {
+            c
+        } else {
+            '_'
+        });
+    }
     if kept.is_empty() { "_".into() } else { kept }
 }
 
@@ -204,7 +204,12 @@ mod tests {
 
     #[test]
     fn names_of_files_hold_no_separator_and_differ() {
-        let files = files(&sample::outcome(), Lang::En);
+        let mut outcome = sample::outcome();
+        let mut twin = outcome.rooms[0].areas[0].clone();
+        twin.name = twin.name.replace('<', ">");
+        outcome.rooms[0].areas.push(twin);
+        outcome.rooms[0].name = "室".repeat(300);
+        let files = files(&outcome, Lang::En);
         let mut names: Vec<String> = files.iter().map(|(name, _)| name.to_lowercase()).collect();
         assert!(
             names
@@ -212,6 +217,7 @@ mod tests {
                 .all(|name| !name.contains(['/', '\\', '<', '"', ':'])),
             "{names:?}"
         );
+        assert!(names.iter().all(|name| name.len() < 256), "{names:?}");
         names.sort();
         names.dedup();
         assert_eq!(names.len(), files.len());

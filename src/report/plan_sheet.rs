@@ -8,14 +8,14 @@ use super::number;
 use super::plan::{Subject, grid_facts, maintenance, statistic_of};
 use super::plan_view::{Sight, View};
 use super::sentence::bound;
-use super::words::{self, Lang, Symbol, Term, phrase, word};
+use super::words::{self, Lang, Term, phrase, word};
 use crate::grid::Exclusion;
 use crate::outcome::Requirement;
 use crate::quantity::Statistic;
 
 pub(super) const WIDTH: f64 = 760.0;
 pub(super) const WINDOW: Px = [690.0, 500.0];
-pub(super) const CORNER: Px = [54.0, 78.0];
+pub(super) const CORNER: Px = [54.0, 95.0];
 pub(super) const INK: Rgb = [32, 36, 42];
 pub(super) const PALE: Rgb = [120, 126, 134];
 pub(super) const LIMIT: Rgb = [176, 24, 38];
@@ -75,29 +75,21 @@ impl Drawing<'_> {
 
     pub(super) fn title_block(&mut self) {
         let Subject { room, area, .. } = self.subject;
-        let number = if room.number.is_empty() {
-            String::new()
-        } else {
-            format!("{} ", room.number)
-        };
-        let head = format!("{number}{} · {}", room.name, area.name);
-        self.canvas.text(
-            [12.0, 16.0],
-            &cut(&head, 15.0, WIDTH - 24.0),
-            bold(15.0, Anchor::Start),
-        );
-        for (line, y) in [(self.conditions(), 36.0), (self.results(), 53.0)] {
-            self.canvas.text(
-                [12.0, y],
-                &cut(&line, 11.0, WIDTH - 24.0),
-                lettering(11.0, Anchor::Start),
-            );
+        let head = format!("{} {} · {}", room.number, room.name, area.name);
+        let head = cut(head.trim_start(), 15.0, WIDTH - 24.0);
+        self.canvas
+            .text([12.0, 16.0], &head, bold(15.0, Anchor::Start));
+        let lines = [self.quantity(), self.conditions(), self.results()];
+        for (line, y) in lines.into_iter().zip([36.0, 53.0, 70.0]) {
+            let line = cut(&line, 11.0, WIDTH - 24.0);
+            self.canvas
+                .text([12.0, y], &line, lettering(11.0, Anchor::Start));
         }
         self.canvas
-            .line(&[[12.0, 65.0], [WIDTH - 12.0, 65.0]], PALE, 0.5);
+            .line(&[[12.0, 82.0], [WIDTH - 12.0, 82.0]], PALE, 0.5);
     }
 
-    fn conditions(&self) -> String {
+    fn quantity(&self) -> String {
         let Subject {
             room, area, field, ..
         } = self.subject;
@@ -107,23 +99,11 @@ impl Drawing<'_> {
         } else {
             Term::InitialValues
         };
-        let mut parts = vec![
-            format!(
-                "{}, {}",
-                words::quantity(lang, field.quantity),
-                word(lang, state)
-            ),
-            format!("{}: {}", word(lang, Term::LightScene), field.light_scene),
-        ];
-        let height = area
-            .grid
-            .points
-            .first()
-            .map_or(area.grid.origin.z, |point| point.position.z)
-            - room.floor_m;
-        parts.push(match self.view.sight {
+        let first = area.grid.points.first();
+        let height_m = first.map_or(area.grid.origin.z, |point| point.position.z) - room.floor_m;
+        let place = match self.view.sight {
             Sight::Plan => {
-                let height = number::fixed(lang, height, 2);
+                let height = number::fixed(lang, height_m, 2);
                 format!(
                     "{} {height} {}",
                     word(lang, Term::PlaneHeight),
@@ -131,15 +111,33 @@ impl Drawing<'_> {
                 )
             }
             Sight::Elevation => word(lang, Term::ViewedFromRoom).to_owned(),
-        });
+        };
+        format!(
+            "{}, {} · {place}",
+            words::quantity(lang, field.quantity),
+            word(lang, state)
+        )
+    }
+
+    fn conditions(&self) -> String {
+        let Subject {
+            room, area, field, ..
+        } = self.subject;
+        let lang = self.lang;
+        let mut parts = vec![grid_facts(lang, area)];
         parts.extend(maintenance(lang, room));
+        parts.push(format!(
+            "{}: {}",
+            word(lang, Term::LightScene),
+            field.light_scene
+        ));
         parts.join(" · ")
     }
 
     fn results(&self) -> String {
-        let Subject { area, field, .. } = self.subject;
+        let quantity = self.subject.field.quantity;
         let lang = self.lang;
-        let mut parts = vec![grid_facts(lang, area)];
+        let mut parts = Vec::new();
         for statistic in [
             Statistic::Mean,
             Statistic::Min,
@@ -147,38 +145,36 @@ impl Drawing<'_> {
             Statistic::U0,
         ] {
             if let Some(value) = statistic_of(self.subject, statistic) {
-                let symbol = words::symbol(lang, field.quantity, statistic);
-                let plain = Symbol {
-                    rest: String::new(),
-                    ..symbol
-                };
-                // The quantity is named above; what is left of the index reads as one word.
-                let index = plain.index.rsplit(',').next().unwrap_or_default();
-                let index = if statistic == Statistic::Mean {
-                    ""
-                } else {
-                    index
-                };
-                let symbol = format!("{}{index}", plain.letter);
-                let unit = number::unit(lang, field.quantity, statistic);
-                parts.push(format!(
-                    "{symbol} = {}{unit}",
-                    self.text_of(statistic, value)
-                ));
+                let unit = number::unit(lang, quantity, statistic);
+                let value = self.text_of(statistic, value);
+                parts.push(format!("{} = {value}{unit}", self.short(statistic)));
             }
         }
         if let Some(requirement) = self.limit {
             let (limit, is_minimum) = bound(requirement.bound);
             let limit = self.text_of(requirement.statistic, limit);
+            let unit = number::unit(lang, quantity, requirement.statistic);
             let term = if is_minimum {
                 Term::AtLeast
             } else {
                 Term::AtMost
             };
-            let required = phrase(lang, term, &[&limit]);
-            parts.push(format!("{} {required}", word(lang, Term::Required)));
+            let required = phrase(lang, term, &[&format!("{limit}{unit}")]);
+            let symbol = self.short(requirement.statistic);
+            parts.push(format!(
+                "{}: {symbol} {required}",
+                word(lang, Term::Required)
+            ));
         }
         parts.join(" · ")
+    }
+
+    /// `Ē`, `Emin`: the quantity is named above, and what is left of the index reads as one word.
+    fn short(&self, statistic: Statistic) -> String {
+        let symbol = words::symbol(self.lang, self.subject.field.quantity, statistic);
+        let index = symbol.index.rsplit(',').next().unwrap_or_default();
+        let index = if symbol.letter == "Ē" { "" } else { index };
+        format!("{}{index}", symbol.letter)
     }
 
     pub(super) fn axes(&mut self) {

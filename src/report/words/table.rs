@@ -361,6 +361,6 @@ pub const TERMS: [(Term, &str, &str); COUNT] = [
     (Term::UnitMetre, "m", "м"),
     (Term::UnitSquareMetre, "m²", "м²"),
     (Term::UnitPowerDensity, "W/m²", "Вт/м²"),
-    (Term::RoomsPassed, "{} rooms: {} comply, {} do not, {} are open", "помещений: {}; соответствуют: {}, не соответствуют: {}, не установлено: {}"),
+    (Term::RoomsPassed, "{} rooms: ✓ {} comply, ✗ {} do not, ? {} are open", "помещений: {}; ✓ соответствуют: {}, ✗ не соответствуют: {}, ? не установлено: {}"),
     (Term::Worst, "tightest requirement", "наименьший запас"),
 ];

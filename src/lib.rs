@@ -21,6 +21,7 @@ pub mod plan;
 pub mod project;
 pub mod quantity;
 pub mod query;
+pub mod report;
 pub mod rng;
 pub mod scene;
 pub mod solve;

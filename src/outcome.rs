@@ -176,6 +176,8 @@ pub struct PointField {
     pub quantity: Quantity,
     /// Whether maintained (else initial).
     pub maintained: bool,
+    /// Number of blocks behind every point.
+    pub n: usize,
     /// One entry per grid point; `None` where the point is excluded.
     pub points: Vec<Option<PointValue>>,
 }

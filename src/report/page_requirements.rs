@@ -1,0 +1,150 @@
+//! The table of requirements on the page: limit, value, numerical interval, margin, verdict.
+
+use super::markup::{class_of, grid, symbol};
+use super::sentence::{Naming, is_unverified, sentence};
+use super::words::{self, Lang, Term, phrase, word};
+use super::xml::{escape, put};
+use crate::outcome::{Outcome, Requirement, Verdict};
+use crate::quantity::{Quantity, Statistic};
+use std::collections::BTreeSet;
+
+/// The table of requirements, under the names of their rooms if there are several.
+pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> String {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut room = None;
+    for requirement in listed {
+        if naming.room && room != Some(&requirement.room) {
+            room = Some(&requirement.room);
+            rows.push(vec![escape(&requirement.room)]);
+        }
+        rows.push(row(lang, requirement, naming));
+    }
+    let head = [
+        Term::Requirement,
+        Term::Where,
+        Term::Required,
+        Term::Value,
+        Term::NumericalInterval,
+        Term::Margin,
+        Term::VerdictColumn,
+    ]
+    .map(|term| word(lang, term));
+    grid("walrrrl", &head, &rows)
+}
+
+fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
+    let text = sentence(
+        lang,
+        r,
+        Naming {
+            room: false,
+            ..naming
+        },
+    );
+    let place = if r.subject == r.room {
+        let scene = if naming.light_scene {
+            format!(" · {}", r.light_scene)
+        } else {
+            String::new()
+        };
+        format!("{}{scene}", word(lang, Term::RoomWord))
+    } else {
+        text.place
+    };
+    let mark = if is_unverified(r) { "°" } else { "" };
+    let name = escape(&words::quantity(lang, r.quantity));
+    let verified = escape(words::verified(lang, &r.verified));
+    let source = if r.clause.is_empty() {
+        verified
+    } else {
+        format!("{} · {verified}", escape(&r.clause))
+    };
+    vec![
+        format!("<span title=\"{name}\">{}</span>", symbol(&text.symbol)),
+        escape(&place),
+        format!(
+            "<span class=\"w\">{}{mark}</span><br/><span class=\"note\">{source}</span>",
+            text.required
+        ),
+        text.value,
+        text.interval,
+        text.margin,
+        verdict(lang, r),
+    ]
+}
+
+/// The verdict's word and, below it, what must be known with it.
+fn verdict(lang: Lang, r: &Requirement) -> String {
+    let mut html = format!(
+        "<span class=\"{}\">{}</span>",
+        class_of(Some(r.verdict)),
+        words::verdict(lang, r.verdict)
+    );
+    if r.at_the_limit {
+        put(
+            &mut html,
+            format_args!(", {}", word(lang, Term::AtTheLimit)),
+        );
+    }
+    let mut lines: Vec<String> = Vec::new();
+    lines.extend(
+        r.value
+            .as_ref()
+            .err()
+            .map(|undefined| escape(&undefined.reason)),
+    );
+    lines.extend((!r.note.is_empty()).then(|| escape(&r.note)));
+    lines.extend(
+        r.other_comparison
+            .map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
+    );
+    lines.extend(
+        r.at_risk
+            .iter()
+            .map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(risk))),
+    );
+    for line in lines {
+        put(
+            &mut html,
+            format_args!("<br/><span class=\"note\">{line}</span>"),
+        );
+    }
+    html
+}
+
+/// What the marks and symbols in the table mean.
+pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String {
+    let any = |test: &dyn Fn(&Requirement) -> bool| listed.iter().any(|r| test(r));
+    let mut notes = Vec::new();
+    if any(&is_unverified) {
+        notes.push(format!("° {}", word(lang, Term::UnverifiedMeans)));
+    }
+    if any(&|r| r.verdict == Verdict::Undecided) {
+        notes.push(word(lang, Term::UndecidedMeans).to_owned());
+    }
+    if any(&|r| r.at_the_limit) {
+        notes.push(word(lang, Term::AtTheLimitMeans).to_owned());
+    }
+    let keys: BTreeSet<String> = outcome
+        .requirements
+        .iter()
+        .filter(|r| any(&|l| l.quantity == r.quantity))
+        .map(|r| r.quantity.key())
+        .collect();
+    let names = keys
+        .into_iter()
+        .filter_map(|key| Quantity::parse(&key))
+        .map(|quantity| {
+            format!(
+                "{} — {}",
+                symbol(&words::symbol(lang, quantity, Statistic::Value)),
+                escape(&words::quantity(lang, quantity))
+            )
+        });
+    notes.push(names.collect::<Vec<_>>().join("; "));
+    let mut html = String::new();
+    for note in notes {
+        put(&mut html, format_args!("<p class=\"note\">{note}</p>\n"));
+    }
+    html
+}

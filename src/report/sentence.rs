@@ -1,0 +1,290 @@
+//! A requirement and the verdict of the whole in words: what terminal, page, junit and sarif say
+//! alike. Every interval here is the joint one, by which the verdict was given.
+
+use super::number;
+use super::words::{self, Lang, Symbol, Term, phrase, word};
+use crate::outcome::{Bound, NormOutcome, Outcome, Requirement, Verdict};
+use crate::quantity::Quantity;
+
+/// The cells of one requirement.
+#[derive(Clone, Debug)]
+pub struct Sentence {
+    /// Symbol of quantity and statistic.
+    pub symbol: Symbol,
+    /// Room, subject and light scene, as far as they are needed to tell requirements apart.
+    pub place: String,
+    /// Bound, limit and unit.
+    pub required: String,
+    /// Value and unit, or "—".
+    pub value: String,
+    /// Joint numerical interval, "—" where there is no value, "no interval" where none is known.
+    pub interval: String,
+    /// The verdict's word.
+    pub verdict: &'static str,
+    /// Margin to the limit, positive when it complies.
+    pub margin: String,
+}
+
+/// What must be said of a place: whether rooms and light scenes need naming.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Naming {
+    /// Name the room.
+    pub room: bool,
+    /// Name the light scene.
+    pub light_scene: bool,
+}
+
+impl Naming {
+    /// Rooms are named if there are several, light scenes if requirements use several.
+    pub fn of(outcome: &Outcome) -> Self {
+        let first = outcome.requirements.first().map(|r| r.light_scene.as_str());
+        Self {
+            room: outcome.rooms.len() > 1,
+            light_scene: outcome
+                .requirements
+                .iter()
+                .any(|r| Some(r.light_scene.as_str()) != first),
+        }
+    }
+}
+
+/// Limit and whether it is a lower one.
+pub fn bound(bound: Bound) -> (f64, bool) {
+    match bound {
+        Bound::Min(limit) => (limit, true),
+        Bound::Max(limit) => (limit, false),
+    }
+}
+
+/// Whether the limit was not checked against the text of its norm.
+pub fn is_unverified(requirement: &Requirement) -> bool {
+    requirement.verified == "unverified"
+}
+
+/// A requirement in words.
+pub fn sentence(lang: Lang, requirement: &Requirement, naming: Naming) -> Sentence {
+    let (quantity, statistic) = (requirement.quantity, requirement.statistic);
+    let (limit, is_minimum) = bound(requirement.bound);
+    let unit = number::unit(lang, quantity, statistic);
+    let limit_text = if limit.is_finite() {
+        let limit_text = number::limit(lang, quantity, statistic, limit);
+        let term = if is_minimum {
+            Term::AtLeast
+        } else {
+            Term::AtMost
+        };
+        phrase(lang, term, &[&format!("{limit_text}{unit}")])
+    } else {
+        "—".into()
+    };
+    let (value, interval) = match &requirement.value {
+        Ok(value) => {
+            let shown = number::value_beside(lang, quantity, statistic, *value, limit);
+            (format!("{shown}{unit}"), interval(lang, requirement))
+        }
+        Err(_) => ("—".into(), "—".into()),
+    };
+    Sentence {
+        symbol: words::symbol(lang, quantity, statistic),
+        place: place(requirement, naming),
+        required: limit_text,
+        value,
+        interval,
+        verdict: words::verdict(lang, requirement.verdict),
+        margin: margin(lang, requirement),
+    }
+}
+
+fn interval(lang: Lang, requirement: &Requirement) -> String {
+    let (lo, hi) = (requirement.lo_joint, requirement.hi_joint);
+    if requirement.verdict == Verdict::Declared {
+        return "—".into();
+    }
+    if !(lo.is_finite() && hi.is_finite()) {
+        return word(lang, Term::NoInterval).into();
+    }
+    let text = |x| number::value(lang, requirement.quantity, requirement.statistic, x);
+    format!("{}…{}", text(lo), text(hi))
+}
+
+fn margin(lang: Lang, requirement: &Requirement) -> String {
+    match requirement.margin.filter(|margin| margin.is_finite()) {
+        None => "—".into(),
+        Some(margin) => {
+            let sign = if margin > 0.0 { "+" } else { "" };
+            let text = if requirement.quantity == Quantity::Ugr {
+                number::fixed(lang, margin, 1)
+            } else {
+                number::percent(lang, margin)
+            };
+            format!("{sign}{text}")
+        }
+    }
+}
+
+fn place(requirement: &Requirement, naming: Naming) -> String {
+    let mut parts = Vec::new();
+    if naming.room {
+        parts.push(requirement.room.as_str());
+    }
+    if requirement.subject != requirement.room || !naming.room {
+        parts.push(requirement.subject.as_str());
+    }
+    if naming.light_scene {
+        parts.push(requirement.light_scene.as_str());
+    }
+    parts.join(" · ")
+}
+
+/// Title and edition, the edition once.
+pub fn norm_name(norm: &NormOutcome) -> String {
+    if norm.edition.is_empty() || norm.title.contains(&norm.edition) {
+        norm.title.clone()
+    } else {
+        format!("{}:{}", norm.title, norm.edition)
+    }
+}
+
+/// How many requirements have which verdict.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Certainly complied with.
+    pub pass: usize,
+    /// Certainly not.
+    pub fail: usize,
+    /// Undecided, or without a value.
+    pub open: usize,
+    /// Declared by the user.
+    pub declared: usize,
+    /// Not assessed.
+    pub not_assessed: usize,
+}
+
+impl Tally {
+    /// Counts verdicts.
+    pub fn of<'a>(requirements: impl IntoIterator<Item = &'a Requirement>) -> Self {
+        let mut tally = Self::default();
+        for requirement in requirements {
+            let count = match requirement.verdict {
+                Verdict::Pass => &mut tally.pass,
+                Verdict::Fail => &mut tally.fail,
+                Verdict::Undecided | Verdict::Undefined => &mut tally.open,
+                Verdict::Declared => &mut tally.declared,
+                Verdict::NotAssessed => &mut tally.not_assessed,
+            };
+            *count += 1;
+        }
+        tally
+    }
+
+    /// Requirements that were to be judged.
+    pub fn judged(self) -> usize {
+        self.pass + self.fail + self.open
+    }
+
+    /// Fail before open before pass; `None` if nothing was judged.
+    pub fn verdict(self) -> Option<Verdict> {
+        if self.fail > 0 {
+            Some(Verdict::Fail)
+        } else if self.open > 0 {
+            Some(Verdict::Undecided)
+        } else if self.pass > 0 {
+            Some(Verdict::Pass)
+        } else {
+            None
+        }
+    }
+}
+
+/// The verdict of the whole in one line: "complies with EN 12464-1:2021: 14 of 14 requirements pass".
+pub fn overall(lang: Lang, outcome: &Outcome) -> String {
+    let (head, counts) = overall_parts(lang, outcome);
+    match counts {
+        Some(counts) => format!("{head}: {counts}"),
+        None => head,
+    }
+}
+
+/// The verdict of the whole and, apart from it, its counts.
+pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) {
+    let tally = Tally::of(&outcome.requirements);
+    let name = outcome.norm.as_ref().map(norm_name);
+    let with = |named: Term, plain: Term| match &name {
+        Some(name) => phrase(lang, named, &[name]),
+        None => word(lang, plain).to_owned(),
+    };
+    let total = tally.judged().to_string();
+    let count = |term, number: usize| phrase(lang, term, &[&number.to_string(), &total]);
+    let mut counts = Vec::new();
+    let head = match tally.verdict() {
+        Some(Verdict::Fail) => {
+            counts.push(count(Term::FailedOf, tally.fail));
+            if tally.open > 0 {
+                counts.push(count(Term::OpenOf, tally.open));
+            }
+            with(Term::FailsWith, Term::FailsAll)
+        }
+        Some(Verdict::Pass) => {
+            counts.push(count(Term::PassedOf, tally.pass));
+            let project = word(lang, Term::ProjectRequirements);
+            match &name {
+                Some(name) => phrase(lang, Term::CompliesWith, &[name]),
+                None => phrase(lang, Term::CompliesWith, &[project]),
+            }
+        }
+        Some(_) => {
+            counts.push(count(Term::OpenOf, tally.open));
+            counts.push(count(Term::PassedOf, tally.pass));
+            with(Term::OpenWith, Term::OpenAll)
+        }
+        None => word(lang, Term::NothingRequired).to_owned(),
+    };
+    if tally.declared > 0 {
+        counts.push(phrase(
+            lang,
+            Term::DeclaredCount,
+            &[&tally.declared.to_string()],
+        ));
+    }
+    if tally.not_assessed > 0 {
+        counts.push(phrase(
+            lang,
+            Term::NotAssessedCount,
+            &[&tally.not_assessed.to_string()],
+        ));
+    }
+    (head, (!counts.is_empty()).then(|| counts.join("; ")))
+}
+
+/// Key of a verdict in files for machines.
+pub fn verdict_key(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "pass",
+        Verdict::Fail => "fail",
+        Verdict::Undecided => "undecided",
+        Verdict::Undefined => "undefined",
+        Verdict::Declared => "declared",
+        Verdict::NotAssessed => "not_assessed",
+    }
+}
+
+/// One English line about a requirement, for logs that machines show to people.
+pub fn line(requirement: &Requirement) -> String {
+    let naming = Naming {
+        room: true,
+        light_scene: true,
+    };
+    let text = sentence(Lang::En, requirement, naming);
+    let because = match &requirement.value {
+        Ok(_) => String::new(),
+        Err(undefined) => format!(" ({undefined})"),
+    };
+    format!(
+        "{} · {}: required {}, found {}{because}, numerical interval {}",
+        text.symbol.text(),
+        text.place,
+        text.required,
+        text.value,
+        text.interval,
+    )
+}

@@ -22,18 +22,15 @@ fn main() {
     let base = Effort::default();
     let list = [
         base,
-        Effort { gather: 8, ..base },
-        Effort { gather: 32, ..base },
-        Effort { walks: 2, ..base },
-        Effort { walks: 8, ..base },
-        Effort { walks: 16, ..base },
-        Effort { shadow_rays: 2.0, ..base },
-        Effort { shadow_rays: 4.0, ..base },
-        Effort { shadow_rays: 12.0, ..base },
-        Effort { links: 32, ..base },
-        Effort { links: 256, ..base },
-        Effort { patch_m2: Some(0.3), ..base },
-        Effort { patch_m2: Some(0.03), ..base },
+        Effort { looks: 2, ..base },
+        Effort { looks: 4, ..base },
+        Effort { looks: 8, ..base },
+        Effort { looks: 4, shadow_rays: 12.0, ..base },
+        Effort { looks: 4, shadow_rays: 12.0, walks: 2, ..base },
+        Effort { looks: 4, shadow_rays: 12.0, walks: 2, patch_m2: Some(0.03), ..base },
+        Effort { looks: 4, walks: 8, opening_points: 4, ..base },
+        Effort { looks: 4, walks: 8, opening_points: 4, shadow_rays: 12.0, ..base },
+        Effort { looks: 4, walks: 16, opening_points: 4, gather: 64, ..base },
     ];
     for effort in list {
         let t0 = common::cpu_seconds();
@@ -57,8 +54,8 @@ fn main() {
         let block_s = (t2 - t1) / 128.0;
         let sd = (square * 128.0).sqrt();
         println!(
-            "gather {:3} walks {:3} shadow {:4} links {:3} patch {:?} ({} patches): prepare {:.3} s, block {:.2} ms, sd/point {:.2} % (direct {:.2} %), cost to 0.5 %: {:.3} s",
-            effort.gather, effort.walks, effort.shadow_rays, effort.links, effort.patch_m2, prepared.patches(),
+            "gather {:3} walks {:3} looks {:2} shadow {:4} links {:3} patch {:?} ({} patches): prepare {:.3} s, block {:.2} ms, sd/point {:.2} % (direct {:.2} %), cost to 0.5 %: {:.3} s",
+            effort.gather, effort.walks, effort.looks, effort.shadow_rays, effort.links, effort.patch_m2, prepared.patches(),
             (t1 - t0) / 4.0, 1e3 * block_s, 100.0 * sd, 100.0 * (part * 128.0).sqrt(), block_s * (sd / 0.005).powi(2)
         );
     }

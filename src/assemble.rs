@@ -217,6 +217,7 @@ impl Context<'_> {
                     quantity: entry.quantity,
                     maintained: true,
                     points: area::points(&self.answers, entry, &weights, self.alpha),
+                    n: self.answers.blocks(),
                 });
                 let blocks = area::blocks(&self.answers, entry, &weights);
                 for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max, Statistic::U0, Statistic::Ud] {

@@ -242,19 +242,30 @@ fn walk(prepared: &Prepared, start: Landing, rng: &mut Rng, desk: &mut Desk) {
         }
         let effort = &prepared.effort;
         add_direct(&prepared.emitters, &here, effort.shadow_rays, rng, &mut desk.scratch, &mut desk.residual);
-        let same_side = rng.uniform() * albedo < reflectance;
-        let facing = if same_side { here.normal } else { -here.normal };
-        let direction = sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms());
-        desk.met.fill(0.0);
-        let next = follow(&prepared.emitters, here.origin(scene, same_side), direction, rng, &mut desk.counts, &mut desk.met);
-        for (residual, met) in desk.residual.iter_mut().zip(&desk.met) {
-            *residual += albedo * met;
+        let looks = effort.looks.max(1);
+        let share = albedo / f64::from(looks);
+        let mut onward = None;
+        for number in 0..looks {
+            let same_side = rng.uniform() * albedo < reflectance;
+            let facing = if same_side { here.normal } else { -here.normal };
+            let direction = sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms());
+            desk.met.fill(0.0);
+            let origin = here.origin(scene, same_side);
+            let next = follow(&prepared.emitters, origin, direction, rng, &mut desk.counts, &mut desk.met);
+            for (residual, met) in desk.residual.iter_mut().zip(&desk.met) {
+                *residual += share * met;
+            }
+            if let Some(next) = &next {
+                add_emission(scene, next.triangle, &mut desk.residual, share);
+                for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, next)) {
+                    *residual += share * stored;
+                }
+            }
+            if number == 0 {
+                onward = next;
+            }
         }
-        let Some(next) = next else { return };
-        add_emission(scene, next.triangle, &mut desk.residual, albedo);
-        for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, &next)) {
-            *residual += albedo * stored;
-        }
+        let Some(next) = onward else { return };
         if rng.uniform() >= albedo {
             return;
         }

@@ -49,6 +49,8 @@ pub struct Effort {
     pub gather: u32,
     /// Residual walks per receiver and block, ≤ `gather`.
     pub walks: u32,
+    /// Rays by which a residual vertex looks at the field around it; the walk goes on along the first.
+    pub looks: u32,
     /// Shadow rays that a residual vertex spends on average at most.
     pub shadow_rays: f64,
     /// Points of each opening tested for visibility per receiver and block.
@@ -66,6 +68,7 @@ impl Default for Effort {
             links: 64,
             gather: 16,
             walks: 4,
+            looks: 1,
             shadow_rays: 6.0,
             opening_points: 1,
             particles: 1024,

@@ -130,3 +130,17 @@ fn hostile_files_end_in_an_answer_or_an_error() {
     println!("{} files: {outcomes:?} (true: imported)", files.len());
     assert!(missed.is_empty(), "broken and yet imported: {missed:?}");
 }
+
+#[test]
+fn flipped_bytes_of_a_good_file_never_panic() {
+    let Some(data) = data() else { return };
+    let path = data.join("geometry/gltf/trimesh/BoxInterleaved.glb");
+    let good = std::fs::read(path).unwrap();
+    for at in 0..good.len() {
+        for flip in [0x01, 0x04, 0x10, 0x80] {
+            let mut bytes = good.clone();
+            bytes[at] ^= flip;
+            let _ = import(&bytes, &mut |_| Err("no other file".to_owned()));
+        }
+    }
+}

@@ -204,6 +204,15 @@ fn what_cannot_be_read_is_refused_by_name() {
         ),
         (
             message(
+                r#"{"mesh":0,"name":"N","matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}"#,
+                plain,
+                "",
+                "",
+            ),
+            "affine",
+        ),
+        (
+            message(
                 r#"{"mesh":0,"name":"N","rotation":[0,0,0,0]}"#,
                 plain,
                 "",
@@ -260,4 +269,15 @@ fn what_cannot_be_read_is_refused_by_name() {
     for (message, fragment) in cases {
         assert!(message.contains(fragment), "{message}: {fragment}");
     }
+}
+
+#[test]
+fn a_chain_of_nodes_ends_before_its_paths_fill_the_memory() {
+    let chain: Vec<String> = (1..100_000)
+        .map(|i| format!(r#"{{"children":[{i}]}}"#))
+        .collect();
+    let nodes = format!("{},{{}}", chain.join(","));
+    let primitive = r#"{"attributes":{"POSITION":0}}"#;
+    let error = document(&Bytes::new(), &nodes, primitive, "", "").unwrap_err();
+    assert!(matches!(error, GltfError::TooDeep(_)), "{error}");
 }

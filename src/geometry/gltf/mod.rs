@@ -87,8 +87,11 @@ pub enum GltfError {
         /// Its parent.
         parent: String,
     },
+    /// Too many levels of nodes.
+    #[error("node \"{0}\" lies more than 256 levels deep")]
+    TooDeep(String),
     /// A bad transform.
-    #[error("node \"{0}\" has a transform that is not finite")]
+    #[error("node \"{0}\" has a transform that is not finite and affine")]
     Transform(String),
     /// Bytes that cannot be had.
     #[error("buffer {index}: {what}")]

@@ -1,7 +1,7 @@
 //! From the scene's roots down: transforms, instances, triangles. A node is visited once, so a cycle
 //! ends in an error and not in a loop.
 
-use glam::{DMat3, DMat4, DQuat, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::json;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -12,6 +12,8 @@ use crate::geometry::mesh::Triangle;
 
 /// More triangles or vertices than a world may have.
 const MAX_ELEMENTS: usize = 100_000_000;
+/// Deeper hierarchies than any CAD program writes; paths grow with the square of it.
+const MAX_DEPTH: usize = 256;
 
 /// State of the walk.
 pub(super) struct Walk<'a> {
@@ -70,13 +72,13 @@ impl<'a> Walk<'a> {
             }
         }
         let z_up = DMat4::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y));
-        let mut stack: Vec<(usize, Option<usize>, DMat4)> = scene
+        let mut stack: Vec<(usize, Option<usize>, DMat4, usize)> = scene
             .nodes
             .iter()
             .rev()
-            .map(|node| (node.value(), None, z_up))
+            .map(|node| (node.value(), None, z_up, 1))
             .collect();
-        while let Some((index, parent, world_from_parent)) = stack.pop() {
+        while let Some((index, parent, world_from_parent, depth)) = stack.pop() {
             let user = parent.map_or("the scene".to_owned(), |p: usize| {
                 format!("node \"{}\"", out.nodes[p].name)
             });
@@ -92,8 +94,12 @@ impl<'a> Walk<'a> {
             if std::mem::replace(&mut self.visited[index], true) {
                 return Err(GltfError::Cycle(name));
             }
+            if depth > MAX_DEPTH {
+                return Err(GltfError::TooDeep(name));
+            }
             let world_from_node = world_from_parent * transform(node);
-            if !world_from_node.is_finite() {
+            let last_row_error = (world_from_node.row(3) - DVec4::W).length();
+            if !(world_from_node.is_finite() && last_row_error < 1e-6) {
                 return Err(GltfError::Transform(name));
             }
             let path = parent.map_or(name.clone(), |p| format!("{}/{name}", out.nodes[p].path));
@@ -108,7 +114,7 @@ impl<'a> Walk<'a> {
                 self.bake(mesh.value(), own, world_from_node, out)?;
             }
             for child in node.children.iter().flatten().rev() {
-                stack.push((child.value(), Some(own), world_from_node));
+                stack.push((child.value(), Some(own), world_from_node, depth + 1));
             }
         }
         // Children come after their parents, so one backward pass hands every surface up to the root.

@@ -3,6 +3,7 @@
 
 pub mod gltf;
 pub mod mesh;
+pub mod polygon;
 pub mod trace;
 
 pub use glam::{DMat3, DVec2, DVec3};

@@ -1,12 +1,93 @@
 //! The project file: schema, and its resolution into worlds ready to be planned. The only code
 //! that reads files. All mistakes of a file are reported in one run, each with line and hint.
 
+mod choices;
+mod context;
+mod diagnostics;
+mod read;
+mod resolve;
+// The structs of the schema are described by the project file's own documentation.
+#[allow(missing_docs)]
+mod schema;
+
+use std::path::Path;
+
 use glam::{DVec2, DVec3};
+use serde::Deserialize;
+
+pub use diagnostics::{Diagnostic, suggestion};
 
 use crate::grid::GridRule;
 use crate::norm::Standard;
 use crate::quantity::{Quantity, Statistic};
 use crate::scene::Scene;
+
+/// How to load.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Whether files outside the project's folder may be read.
+    pub allow_outside: bool,
+}
+
+/// Loads a project.toml, or the one in a folder.
+///
+/// # Errors
+/// All mistakes of the project, in the order of the file.
+pub fn load(path: &Path, options: &LoadOptions) -> Result<Project, Vec<Diagnostic>> {
+    let path = if path.is_dir() {
+        path.join("project.toml")
+    } else {
+        path.to_owned()
+    };
+    let shown = path.display().to_string();
+    let unreadable = |what: String| {
+        vec![Diagnostic::file(
+            &shown,
+            what,
+            "a project is a project.toml or its folder".to_owned(),
+        )]
+    };
+    let full = path
+        .canonicalize()
+        .map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
+    let metadata = full
+        .metadata()
+        .map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
+    if !metadata.is_file() || metadata.len() > context::SMALL_FILE {
+        return Err(unreadable(
+            "the project is not a file of at most 64 MiB".to_owned(),
+        ));
+    }
+    let bytes = std::fs::read(&full)
+        .map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| unreadable("the project file is not UTF-8 text".to_owned()))?;
+    let folder = full.parent().unwrap_or(Path::new("/")).to_owned();
+    let mut context = context::Context {
+        folder,
+        file: shown,
+        text,
+        diagnostics: Vec::new(),
+        biases: Vec::new(),
+        inputs: Vec::new(),
+        allow_outside: options.allow_outside,
+    };
+    let name = full
+        .file_name()
+        .map_or("project.toml".into(), |name| name.to_string_lossy());
+    let text = context.text.clone();
+    context.record(&name, text.as_bytes());
+    let file = read::read(&text, &mut context);
+    let project = resolve::resolve(&file, &mut context);
+    let mut diagnostics = context.diagnostics;
+    match project {
+        Some(project) if diagnostics.is_empty() => Ok(project),
+        _ => {
+            diagnostics.sort_by_key(|d| (d.file != context.file, d.file.clone(), d.line, d.column));
+            Err(diagnostics)
+        }
+    }
+}
 
 /// A resolved project.
 #[derive(Debug)]
@@ -19,6 +100,8 @@ pub struct Project {
     pub light_scenes: Vec<LightScene>,
     /// The norm to judge by.
     pub norm: Option<Norm>,
+    /// Declared properties, shown beside the norm's limits and never computed.
+    pub declared: Vec<Declared>,
     /// How exactly to solve.
     pub accuracy: Accuracy,
     /// What was ignored or approximated while loading.
@@ -40,6 +123,23 @@ pub struct Info {
     pub date: String,
     /// Report languages, `en` and `ru`; never empty.
     pub language: Vec<String>,
+}
+
+/// Properties declared for a luminaire type or a room, `[declared]`.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Declared {
+    /// Name of the luminaire type or room.
+    pub subject: String,
+    /// Colour rendering index R_a.
+    pub ra: Option<f64>,
+    /// Correlated colour temperature, K.
+    pub cct_k: Option<f64>,
+    /// Short-term flicker P_st^LM.
+    pub pst_lm: Option<f64>,
+    /// Stroboscopic visibility measure.
+    pub svm: Option<f64>,
+    /// Pulsation of the illuminance, %.
+    pub pulsation_percent: Option<f64>,
 }
 
 /// An input file and what it contained.
@@ -96,7 +196,7 @@ pub struct Room {
 }
 
 /// What an area is in the sense of the norm.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AreaKind {
     /// Task area.
@@ -216,7 +316,7 @@ pub struct Norm {
 }
 
 /// How a value is compared with a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Compare {
     /// Unrounded.

@@ -1,0 +1,163 @@
+//! Mistakes of a user's file: collected, with the place and a hint, and printed the way a compiler
+//! prints them. Columns count characters, from 1.
+
+use std::fmt;
+use std::ops::Range;
+
+/// One mistake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// File as the user wrote it.
+    pub file: String,
+    /// Line from 1; 0 where the whole file is meant.
+    pub line: usize,
+    /// Column from 1.
+    pub column: usize,
+    /// The source line, empty where there is none.
+    pub source_line: String,
+    /// Number of characters to underline.
+    pub width: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What to do, may be empty.
+    pub hint: String,
+}
+
+impl Diagnostic {
+    /// A mistake at a byte range of `text`.
+    pub fn at(file: &str, text: &str, span: Range<usize>, message: String, hint: String) -> Self {
+        let start = floor_boundary(text, span.start);
+        let end = floor_boundary(text, span.end).max(start);
+        let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let source_line = text[line_start..].lines().next().unwrap_or_default();
+        let column = text[line_start..start].chars().count() + 1;
+        let last = end.min(line_start + source_line.len()).max(start);
+        Self {
+            file: file.to_owned(),
+            line: text[..start].matches('\n').count() + 1,
+            column,
+            source_line: source_line.to_owned(),
+            width: text[start..last].chars().count().max(1),
+            message,
+            hint,
+        }
+    }
+
+    /// A mistake of a whole file.
+    pub fn file(file: &str, message: String, hint: String) -> Self {
+        Self {
+            file: file.to_owned(),
+            line: 0,
+            column: 0,
+            source_line: String::new(),
+            width: 0,
+            message,
+            hint,
+        }
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "error: {}", self.message)?;
+        if self.line == 0 {
+            write!(f, " --> {}", self.file)?;
+            if !self.hint.is_empty() {
+                write!(f, "\n  = hint: {}", self.hint)?;
+            }
+            return Ok(());
+        }
+        let number = self.line.to_string();
+        let margin = " ".repeat(number.len());
+        let source = self.source_line.replace('\t', " ");
+        let indent = " ".repeat(self.column - 1);
+        let carets = "^".repeat(self.width);
+        writeln!(f, "{margin}--> {}:{}:{}", self.file, self.line, self.column)?;
+        writeln!(f, "{margin} |")?;
+        writeln!(f, "{number} | {source}")?;
+        write!(f, "{margin} | {indent}{carets}")?;
+        if !self.hint.is_empty() {
+            write!(f, "\n{margin} = hint: {}", self.hint)?;
+        }
+        Ok(())
+    }
+}
+
+/// `did you mean "x"?`, or the list of what there is.
+pub fn suggestion<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let mut known: Vec<&str> = known.into_iter().collect();
+    known.dedup();
+    let near = known
+        .iter()
+        .map(|name| (edit_distance(wrong, name), *name))
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, name)| *distance <= 1 + name.chars().count() / 4);
+    match near {
+        Some((_, name)) => format!("did you mean \"{name}\"?"),
+        None if known.is_empty() => String::new(),
+        None => {
+            let shown: Vec<&str> = known.iter().take(20).copied().collect();
+            let dots = if known.len() > 20 { ", …" } else { "" };
+            format!("there is: {}{dots}", shown.join(", "))
+        }
+    }
+}
+
+/// Levenshtein distance, ASCII case ignored.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let a: Vec<char> = a.to_ascii_lowercase().chars().collect();
+    let b: Vec<char> = b.to_ascii_lowercase().chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.iter().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let replace = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = replace.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+fn floor_boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_caret_stands_under_the_word_even_after_umlauts() {
+        let text = "a = 1\nö = \"über\" # x\n";
+        let start = text.find("\"ü").unwrap();
+        let diagnostic = Diagnostic::at(
+            "p.toml",
+            text,
+            start..start + "\"über\"".len(),
+            "no".into(),
+            "try".into(),
+        );
+        let expected =
+            "error: no\n --> p.toml:2:5\n  |\n2 | ö = \"über\" # x\n  |     ^^^^^^\n  = hint: try";
+        assert_eq!(diagnostic.to_string(), expected);
+    }
+
+    #[test]
+    fn near_names_are_suggested_and_far_ones_listed() {
+        assert_eq!(
+            suggestion("flor", ["floor", "walls"]),
+            "did you mean \"floor\"?"
+        );
+        assert_eq!(
+            suggestion("zzz", ["floor", "walls"]),
+            "there is: floor, walls"
+        );
+        assert_eq!(suggestion("zzz", []), "");
+    }
+}

@@ -1,0 +1,172 @@
+//! A world under construction, and the question in which room a point lies.
+
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
+
+use crate::geometry::gltf::ImportedNode;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::polygon;
+use crate::luminaire::Luminaire;
+use crate::material::{Bsdf, Material};
+use crate::project::{AreaSpec, CustomRequirement, Room, Viewpoint};
+
+/// What stands on a room's boundary still belongs to it, m.
+const TOLERANCE_M: f64 = 0.01;
+
+/// A world before its scene is built.
+#[derive(Debug)]
+pub struct Draft {
+    /// For messages: the file's name, or the room's.
+    pub label: String,
+    /// Place in the project file to which faults of the whole world point.
+    pub span: Range<usize>,
+    /// Whether it came from CAD, where luminaires may hang outside of the rooms.
+    pub cad: bool,
+    pub mesh: Mesh,
+    pub materials: Vec<Material>,
+    pub nodes: Vec<ImportedNode>,
+    pub rooms: Vec<Room>,
+    /// Maintenance of each room.
+    pub factors: Vec<RoomFactors>,
+    pub luminaires: Vec<Luminaire>,
+    pub areas: Vec<AreaSpec>,
+    pub viewpoints: Vec<Viewpoint>,
+    pub requirements: Vec<CustomRequirement>,
+}
+
+/// Maintenance factors given for a room.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RoomFactors {
+    pub llmf: Option<f64>,
+    pub lsf: Option<f64>,
+    pub lmf: Option<f64>,
+}
+
+/// Where a point lies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Located {
+    Outside,
+    /// World and room.
+    In(usize, usize),
+    /// Rooms of different worlds that share the point.
+    Ambiguous(String),
+}
+
+impl Draft {
+    /// An empty world.
+    pub fn new(label: &str, span: Range<usize>) -> Self {
+        Self {
+            label: label.to_owned(),
+            span,
+            cad: false,
+            mesh: Mesh::default(),
+            materials: Vec::new(),
+            nodes: Vec::new(),
+            rooms: Vec::new(),
+            factors: Vec::new(),
+            luminaires: Vec::new(),
+            areas: Vec::new(),
+            viewpoints: Vec::new(),
+            requirements: Vec::new(),
+        }
+    }
+
+    /// Index of a material, added when it is new.
+    pub fn material(&mut self, material: &Material) -> usize {
+        self.materials
+            .iter()
+            .position(|known| known == material)
+            .unwrap_or_else(|| {
+                self.materials.push(material.clone());
+                self.materials.len() - 1
+            })
+    }
+
+    /// Whether some surface emits.
+    pub fn emits(&self) -> bool {
+        self.mesh
+            .surfaces
+            .iter()
+            .any(|surface| matches!(self.materials[surface.material].bsdf, Bsdf::Emitter { .. }))
+    }
+
+    /// Surfaces with this name, or those of the node with this name or path.
+    pub fn surfaces_named(&self, name: &str) -> Vec<u32> {
+        let own: Vec<u32> = (0..self.mesh.surfaces.len() as u32)
+            .filter(|&index| self.mesh.surfaces[index as usize].name == name)
+            .collect();
+        let mut found: Vec<u32> = self
+            .nodes
+            .iter()
+            .filter(|node| node.name == name || node.path == name)
+            .flat_map(|node| node.surfaces.iter().copied())
+            .chain(own)
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Names under which surfaces can be found.
+    pub fn surface_names(&self) -> impl Iterator<Item = &str> {
+        let surfaces = self.mesh.surfaces.iter().map(|s| s.name.as_str());
+        surfaces.chain(self.nodes.iter().map(|node| node.name.as_str()))
+    }
+}
+
+/// World and room of a name.
+pub fn room_named(drafts: &[Draft], name: &str) -> Option<(usize, usize)> {
+    rooms(drafts)
+        .find(|(_, _, room)| room.name == name)
+        .map(|(world, index, _)| (world, index))
+}
+
+/// All room names in order.
+pub fn room_names(drafts: &[Draft]) -> Vec<&str> {
+    rooms(drafts)
+        .map(|(_, _, room)| room.name.as_str())
+        .collect()
+}
+
+/// All rooms with the indices of world and room.
+pub fn rooms(drafts: &[Draft]) -> impl Iterator<Item = (usize, usize, &Room)> {
+    drafts.iter().enumerate().flat_map(|(world, draft)| {
+        let rooms = draft.rooms.iter().enumerate();
+        rooms.map(move |(index, room)| (world, index, room))
+    })
+}
+
+/// The room in which a point lies; where rooms of one world overlap, the smallest.
+pub fn locate(drafts: &[Draft], point: DVec3) -> Located {
+    for tolerance_m in [1e-6, TOLERANCE_M] {
+        let mut found: Vec<(usize, usize, &Room)> = rooms(drafts)
+            .filter(|(_, _, room)| within(room, point, tolerance_m))
+            .collect();
+        found.sort_by(|a, b| {
+            let area = |room: &Room| polygon::signed_area_m2(&room.footprint);
+            area(a.2).total_cmp(&area(b.2))
+        });
+        if let [(world, room, first), rest @ ..] = &found[..] {
+            return match rest.iter().find(|(other, _, _)| other != world) {
+                Some((_, _, other)) => {
+                    Located::Ambiguous(format!("\"{}\" and \"{}\"", first.name, other.name))
+                }
+                None => Located::In(*world, *room),
+            };
+        }
+    }
+    Located::Outside
+}
+
+/// Whether a point lies in a room, boundary included.
+pub fn in_room(room: &Room, point: DVec3) -> bool {
+    within(room, point, TOLERANCE_M)
+}
+
+fn within(room: &Room, point: DVec3, tolerance_m: f64) -> bool {
+    let z = point.z - room.floor_m;
+    z >= -tolerance_m
+        && z <= room.height_m + tolerance_m
+        && polygon::contains(&room.footprint, DVec2::new(point.x, point.y), tolerance_m)
+}

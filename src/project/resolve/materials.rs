@@ -1,0 +1,212 @@
+//! `[materials]` → scattering models, and which of them were used.
+
+use std::ops::Range;
+
+use crate::material::{Bsdf, Material, Pane};
+use crate::project::context::Context;
+use crate::project::diagnostics::suggestion;
+use crate::project::schema::{At, MaterialSection, Named};
+
+/// The materials of the project.
+#[derive(Debug)]
+pub struct Palette {
+    entries: Vec<Entry>,
+    /// Names that exist in the scene, for hints.
+    known: Vec<String>,
+}
+
+#[derive(Debug)]
+struct Entry {
+    name: At<String>,
+    /// `None` after a mistake that was reported.
+    bsdf: Option<Bsdf>,
+    used: bool,
+}
+
+/// What [`Palette::find`] found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lookup {
+    /// No such entry.
+    Absent,
+    /// An entry with a mistake that was reported.
+    Wrong,
+    Found(Material),
+}
+
+impl Palette {
+    /// Checks all entries.
+    pub fn new(sections: &[Named<MaterialSection>], context: &mut Context) -> Self {
+        let entries = sections
+            .iter()
+            .map(|(name, section)| Entry {
+                name: name.clone(),
+                bsdf: bsdf(section, context),
+                used: false,
+            })
+            .collect();
+        Self {
+            entries,
+            known: Vec::new(),
+        }
+    }
+
+    /// The entry of this name, marked as used.
+    pub fn find(&mut self, name: &str) -> Lookup {
+        self.known.push(name.to_owned());
+        let mut entries = self.entries.iter_mut();
+        let Some(entry) = entries.find(|entry| entry.name.get_ref() == name) else {
+            return Lookup::Absent;
+        };
+        entry.used = true;
+        entry.bsdf.map_or(Lookup::Wrong, |bsdf| {
+            Lookup::Found(Material {
+                name: name.to_owned(),
+                bsdf,
+            })
+        })
+    }
+
+    /// The material a place in the file names; an unknown one is reported.
+    pub fn named(&mut self, name: &At<String>, context: &mut Context) -> Option<Material> {
+        match self.find(name.get_ref()) {
+            Lookup::Found(material) => return Some(material),
+            Lookup::Wrong => return None,
+            Lookup::Absent => {}
+        }
+        let names = self
+            .entries
+            .iter()
+            .map(|entry| entry.name.get_ref().as_str());
+        let hint = suggestion(name.get_ref(), names);
+        let message = format!("no material \"{}\" in [materials]", name.get_ref());
+        context.error(&name.span(), message, &hint);
+        None
+    }
+
+    /// Place of an entry.
+    pub fn span(&self, name: &str) -> Option<Range<usize>> {
+        let mut entries = self.entries.iter();
+        entries
+            .find(|entry| entry.name.get_ref() == name)
+            .map(|entry| entry.name.span())
+    }
+
+    /// Reports entries that belong to nothing: they are misspelt.
+    pub fn report_unused(&self, context: &mut Context) {
+        for entry in self.entries.iter().filter(|entry| !entry.used) {
+            let name = entry.name.get_ref();
+            let mut known = self.known.clone();
+            known.sort();
+            known.dedup();
+            let hint = suggestion(name, known.iter().map(String::as_str));
+            let message = format!("no such material: nothing in the scene uses \"{name}\"");
+            context.error(&entry.name.span(), message, &hint);
+        }
+    }
+}
+
+/// A diffuse material.
+pub fn lambert(name: &str, reflectance: f64) -> Material {
+    Material {
+        name: name.to_owned(),
+        bsdf: Bsdf::Lambert { reflectance },
+    }
+}
+
+/// Diffuse or total reflectance that counts for a room's means; `None` for panes.
+pub fn mean_reflectance(bsdf: &Bsdf) -> Option<f64> {
+    match *bsdf {
+        Bsdf::Lambert { reflectance }
+        | Bsdf::Mirror { reflectance }
+        | Bsdf::Emitter { reflectance, .. }
+        | Bsdf::Opal { reflectance, .. } => Some(reflectance),
+        Bsdf::Glass(_) => None,
+    }
+}
+
+fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
+    let MaterialSection {
+        reflectance,
+        specular,
+        phong,
+        phong_paper,
+        ward,
+        mirror,
+        glass,
+        opal,
+        emit,
+    } = section.get_ref();
+    let before = context.diagnostics.len();
+    let whole = section.span();
+    for (value, name) in [
+        (reflectance, "reflectance"),
+        (specular, "specular"),
+        (mirror, "mirror"),
+        (glass, "glass"),
+    ] {
+        if let Some(value) = value {
+            context.in_range(value, 0.0, 1.0, name);
+        }
+    }
+    if let (Some(diffuse), Some(specular)) = (reflectance, specular) {
+        let sum = diffuse.get_ref() + specular.get_ref();
+        if sum > 1.0 + 1e-9 {
+            let message = format!("reflectance + specular must not exceed 1, they make {sum}");
+            context.error(&specular.span(), message, "");
+        }
+    }
+    if let Some(glossy) = [specular, phong, phong_paper, ward]
+        .into_iter()
+        .flatten()
+        .next()
+    {
+        context.error(
+            &glossy.span(),
+            "glossy reflection is not supported yet",
+            "give the total as `reflectance`",
+        );
+    }
+    if let Some(emit) = emit {
+        context.in_range(emit, 0.0, f64::INFINITY, "emit");
+    }
+    if let Some(opal) = opal {
+        let opal = opal.get_ref();
+        context.in_range(&opal.reflectance, 0.0, 1.0, "reflectance");
+        context.in_range(&opal.transmittance, 0.0, 1.0, "transmittance");
+        let sum = opal.reflectance.get_ref() + opal.transmittance.get_ref();
+        if sum > 1.0 + 1e-9 {
+            let message = format!("reflectance + transmittance must not exceed 1, they make {sum}");
+            context.error(&opal.transmittance.span(), message, "");
+        }
+    }
+    if context.diagnostics.len() > before {
+        return None;
+    }
+    match (reflectance, mirror, glass, opal, emit) {
+        (Some(reflectance), None, None, None, None) => Some(Bsdf::Lambert {
+            reflectance: *reflectance.get_ref(),
+        }),
+        (None, Some(mirror), None, None, None) => Some(Bsdf::Mirror {
+            reflectance: *mirror.get_ref(),
+        }),
+        (None, None, Some(glass), None, None) => Some(Bsdf::Glass(Pane {
+            normal_transmittance: *glass.get_ref(),
+        })),
+        (None, None, None, Some(opal), None) => Some(Bsdf::Opal {
+            reflectance: *opal.get_ref().reflectance.get_ref(),
+            transmittance: *opal.get_ref().transmittance.get_ref(),
+        }),
+        (reflectance, None, None, None, Some(emit)) => Some(Bsdf::Emitter {
+            luminance_cd_m2: *emit.get_ref(),
+            reflectance: reflectance.as_ref().map_or(0.0, |value| *value.get_ref()),
+        }),
+        _ => {
+            context.error(
+                &whole,
+                "a material is exactly one of reflectance, mirror, glass, opal, emit",
+                "only `emit` may be given together with `reflectance`",
+            );
+            None
+        }
+    }
+}

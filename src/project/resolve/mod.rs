@@ -1,0 +1,105 @@
+//! Schema → worlds. The order matters to users: rooms first, then what lies in them, so that every
+//! later mistake can name the room. Nothing is built before the whole file was looked at.
+
+mod area_surface;
+mod areas;
+mod cad;
+mod draft;
+mod furniture;
+mod lists;
+mod luminaires;
+mod materials;
+mod places;
+mod rooms;
+mod settings;
+mod shell;
+mod viewpoints;
+mod walled;
+
+use super::context::Context;
+use super::schema::File;
+use super::{Project, World};
+use crate::scene::{Scene, SceneError};
+use draft::Draft;
+use materials::Palette;
+
+/// Resolves a file; mistakes go into the context, and `None` means there are some.
+pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
+    let info = settings::info(&file.project, context);
+    let mut palette = Palette::new(&file.materials, context);
+    let mut drafts = rooms::drafts(file, &info.name, &mut palette, context);
+    let footprints = file
+        .rooms
+        .iter()
+        .filter(|room| room.get_ref().footprint.is_some());
+    let expected = usize::from(file.scene.is_some()) + footprints.count();
+    let rooms_complete = !file.rooms_lost && drafts.len() == expected;
+    if !rooms_complete {
+        // Where a room is missing, "outside of every room" and the like would be false alarms.
+        drafts.clear();
+    }
+    let norm = settings::norm(file, context);
+    settings::check_rows(file, norm.as_ref(), context);
+    furniture::add(&file.furniture, &mut drafts, &mut palette, context);
+    if rooms_complete {
+        palette.report_unused(context);
+    }
+    let kinds = luminaires::kinds(&file.luminaires, context);
+    places::add(file, kinds, &mut drafts, context);
+    let light_scenes = settings::light_scenes(file, &drafts, context);
+    areas::add(&file.areas, &mut drafts, &light_scenes, context);
+    viewpoints::add(file, &mut drafts, &light_scenes, context);
+    settings::requirements(file, &mut drafts, &light_scenes, context);
+    let declared = settings::declared(file, &drafts, context);
+    let accuracy = settings::accuracy(file, context);
+    if !file.cameras.is_empty() {
+        context.note("cameras are not rendered by check");
+    }
+    if !file.glare_maps.is_empty() {
+        context.note("glare maps are not computed by check");
+    }
+    if !context.diagnostics.is_empty() {
+        return None;
+    }
+    for draft in &drafts {
+        if draft.luminaires.is_empty() && !draft.emits() {
+            context.note(format!("nothing emits light in {}", draft.label));
+        }
+    }
+    let worlds: Vec<Option<World>> = drafts
+        .into_iter()
+        .map(|draft| world(draft, &palette, context))
+        .collect();
+    Some(Project {
+        info,
+        worlds: worlds.into_iter().collect::<Option<_>>()?,
+        light_scenes,
+        norm,
+        declared,
+        accuracy,
+        biases: std::mem::take(&mut context.biases),
+        inputs: std::mem::take(&mut context.inputs),
+    })
+}
+
+fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World> {
+    match Scene::new(draft.mesh, draft.materials, draft.luminaires) {
+        Ok(scene) => Some(World {
+            scene,
+            rooms: draft.rooms,
+            areas: draft.areas,
+            viewpoints: draft.viewpoints,
+            requirements: draft.requirements,
+        }),
+        Err(error) => {
+            let span = match &error {
+                SceneError::NoAbsorption(name) => palette.span(name),
+                SceneError::NoTriangles
+                | SceneError::NotFinite { .. }
+                | SceneError::TooLarge(_) => None,
+            };
+            context.error(&span.unwrap_or(draft.span), error.to_string(), "");
+            None
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! `[[viewpoint]]` and the list of viewpoints → observers. A sweep turns the line of sight about
+//! the vertical; without a direction the line of sight is +x, so its angles are azimuths.
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
+
+use super::areas::light_scene_index;
+use super::draft::{Draft, Located, locate};
+use super::lists::Table;
+use crate::project::context::Context;
+use crate::project::schema::{At, File, SweepSection, ViewpointSection};
+use crate::project::{LightScene, Viewpoint};
+use crate::quantity::Quantity;
+
+/// Directions one sweep may have.
+const MAX_DIRECTIONS: f64 = 3600.0;
+
+/// Adds all observers to their worlds.
+pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], context: &mut Context) {
+    for section in &file.viewpoints {
+        let span = section.span();
+        let section = section.get_ref();
+        let light_scene = light_scene_index(section.light_scene.as_ref(), light_scenes, context);
+        let indices = indices(&section.indices, context);
+        if !context.finite(section.eye.get_ref(), &section.eye.span()) {
+            continue;
+        }
+        let eye = DVec3::from_array(*section.eye.get_ref());
+        let Some(directions) = directions(section, eye, &span, context) else {
+            continue;
+        };
+        let name_span = section.name.span();
+        let viewpoint = Viewpoint {
+            name: section.name.get_ref().clone(),
+            room: 0,
+            eye,
+            directions,
+            indices,
+            light_scene,
+        };
+        let mut report = |context: &mut Context, message: String| {
+            context.error(&name_span, message, "");
+        };
+        insert(viewpoint, drafts, context, &mut report);
+    }
+    let list = file
+        .lists
+        .as_ref()
+        .and_then(|lists| lists.get_ref().viewpoints.as_ref());
+    let columns = &["name", "x", "y", "z", "azimuth", "tilt"];
+    if let Some(table) = list.and_then(|path| Table::read(path, columns, 5, context)) {
+        for row in &table.rows {
+            let Some(name) = row.cells[0].clone() else {
+                table.error(row, "name is missing".to_owned(), "", context);
+                continue;
+            };
+            let numbers = (
+                table.needed3(row, 1, context),
+                table.needed(row, 4, context),
+                table.number(row, 5, context),
+            );
+            let (Ok(eye), Ok(azimuth_deg), Ok(tilt_deg)) = numbers else {
+                continue;
+            };
+            let viewpoint = Viewpoint {
+                name,
+                room: 0,
+                eye: DVec3::from_array(eye),
+                directions: vec![sight(azimuth_deg, tilt_deg.unwrap_or(0.0))],
+                indices: vec![Quantity::Ugr],
+                light_scene: None,
+            };
+            let mut report = |context: &mut Context, message: String| {
+                table.error(row, message, "", context);
+            };
+            insert(viewpoint, drafts, context, &mut report);
+        }
+    }
+}
+
+fn insert(
+    mut viewpoint: Viewpoint,
+    drafts: &mut [Draft],
+    context: &mut Context,
+    report: &mut dyn FnMut(&mut Context, String),
+) {
+    let name = &viewpoint.name;
+    let taken = |draft: &Draft| draft.viewpoints.iter().any(|other| other.name == *name);
+    if drafts.iter().any(taken) {
+        report(context, format!("a second viewpoint \"{name}\""));
+        return;
+    }
+    match locate(drafts, viewpoint.eye) {
+        Located::In(world, room) => {
+            viewpoint.room = room;
+            drafts[world].viewpoints.push(viewpoint);
+        }
+        Located::Outside if drafts.is_empty() => {}
+        Located::Outside => report(
+            context,
+            format!("viewpoint \"{name}\" lies outside of every room"),
+        ),
+        Located::Ambiguous(rooms) => report(
+            context,
+            format!("viewpoint \"{name}\" lies in more than one room: {rooms}"),
+        ),
+    }
+}
+
+fn indices(names: &[At<String>], context: &mut Context) -> Vec<Quantity> {
+    if names.is_empty() {
+        return vec![Quantity::Ugr];
+    }
+    let mut indices = Vec::new();
+    for name in names {
+        match name.get_ref().as_str() {
+            "UGR" => indices.push(Quantity::Ugr),
+            other => {
+                let message = format!("\"{other}\" is no index that can be computed");
+                context.error(&name.span(), message, "there is: UGR");
+            }
+        }
+    }
+    indices
+}
+
+fn directions(
+    section: &ViewpointSection,
+    eye: DVec3,
+    span: &Range<usize>,
+    context: &mut Context,
+) -> Option<Vec<DVec3>> {
+    let (ahead, place) = match (&section.direction, &section.target, &section.sweep) {
+        (Some(_), Some(target), _) => {
+            context.error(&target.span(), "give either `direction` or `target`", "");
+            return None;
+        }
+        (Some(direction), None, _) => (DVec3::from_array(*direction.get_ref()), direction.span()),
+        (None, Some(target), _) => (DVec3::from_array(*target.get_ref()) - eye, target.span()),
+        (None, None, Some(sweep)) => (DVec3::X, sweep.span()),
+        (None, None, None) => {
+            let hint = "direction = [x, y, z], target = [x, y, z] or sweep = { from, to, step }";
+            context.error(span, "the viewpoint looks nowhere", hint);
+            return None;
+        }
+    };
+    if !(ahead.length() > 1e-9 && ahead.is_finite()) {
+        context.error(&place, "the line of sight has no direction", "");
+        return None;
+    }
+    let ahead = ahead.normalize();
+    let Some(sweep) = &section.sweep else {
+        return Some(vec![ahead]);
+    };
+    let SweepSection { from, to, step } = sweep.get_ref();
+    let (from, to, step) = (*from.get_ref(), *to.get_ref(), *step.get_ref());
+    let steps = ((to - from) / step + 1e-9).floor();
+    if !(step > 0.0 && (0.0..MAX_DIRECTIONS).contains(&steps)) {
+        let message = format!("a sweep runs upwards in at most {MAX_DIRECTIONS} steps");
+        context.error(
+            &sweep.span(),
+            message,
+            "for example { from = 0, to = 345, step = 15 }",
+        );
+        return None;
+    }
+    Some(
+        (0..=steps as u32)
+            .map(|i| {
+                let angle_deg = from + f64::from(i) * step;
+                DMat3::from_rotation_z(angle_deg.to_radians()) * ahead
+            })
+            .collect(),
+    )
+}
+
+/// Line of sight at an azimuth from +x towards +y and a tilt above the horizon.
+fn sight(azimuth_deg: f64, tilt_deg: f64) -> DVec3 {
+    let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
+    let (sin_t, cos_t) = tilt_deg.to_radians().sin_cos();
+    DVec3::new(cos_t * cos_a, cos_t * sin_a, sin_t)
+}

@@ -15,7 +15,11 @@ fn main() {
     for i in 0..12 {
         for j in 0..6 {
             let point = DVec3::new(0.25 + 0.5 * f64::from(i), 0.25 + 0.5 * f64::from(j), 0.85);
-            receivers.push(Receiver { point, lift: DVec3::Z, kernels: vec![Kernel::Planar { normal: DVec3::Z }] });
+            receivers.push(Receiver {
+                point,
+                lift: DVec3::Z,
+                kernels: vec![Kernel::Planar { normal: DVec3::Z }],
+            });
         }
     }
     let demand = Demand { receivers, rays: vec![], flux: false };
@@ -55,8 +59,18 @@ fn main() {
         let sd = (square * 128.0).sqrt();
         println!(
             "gather {:3} walks {:3} looks {:2} shadow {:4} links {:3} patch {:?} ({} patches): prepare {:.3} s, block {:.2} ms, sd/point {:.2} % (direct {:.2} %), cost to 0.5 %: {:.3} s",
-            effort.gather, effort.walks, effort.looks, effort.shadow_rays, effort.links, effort.patch_m2, prepared.patches(),
-            (t1 - t0) / 4.0, 1e3 * block_s, 100.0 * sd, 100.0 * (part * 128.0).sqrt(), block_s * (sd / 0.005).powi(2)
+            effort.gather,
+            effort.walks,
+            effort.looks,
+            effort.shadow_rays,
+            effort.links,
+            effort.patch_m2,
+            prepared.patches(),
+            (t1 - t0) / 4.0,
+            1e3 * block_s,
+            100.0 * sd,
+            100.0 * (part * 128.0).sqrt(),
+            block_s * (sd / 0.005).powi(2)
         );
     }
 }

@@ -6,7 +6,8 @@ use crate::emitters::{Emitters, Seen};
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
-    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, Value, Verdict, ViewpointOutcome,
+    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, Value, Verdict,
+    ViewpointOutcome,
 };
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
 use crate::project::{Compare, Project, Room, World};
@@ -39,7 +40,9 @@ pub fn seen_by_views(plan: &Plan, emitters: &Emitters, seed: u64) -> Vec<Vec<Vec
     use rayon::prelude::*;
     plan.rooms
         .iter()
-        .map(|room| room.views.par_iter().map(|view| crate::emitters::seen_from(emitters, view.eye, seed)).collect())
+        .map(|room| {
+            room.views.par_iter().map(|view| crate::emitters::seen_from(emitters, view.eye, seed)).collect()
+        })
         .collect()
 }
 
@@ -56,7 +59,8 @@ impl Context<'_> {
         let compare = self.project.norm.as_ref().map_or(Compare::Exact, |norm| norm.compare);
         let (gauged, note, forced) = self.gauge(room, planned, alpha);
         let other = if compare == Compare::Exact { Compare::Printed } else { Compare::Exact };
-        let judge = |compare| judge::judge(&gauged, planned.quantity, planned.statistic, planned.bound, compare);
+        let judge =
+            |compare| judge::judge(&gauged, planned.quantity, planned.statistic, planned.bound, compare);
         let Judged { verdict, at_the_limit, margin } = judge(compare);
         let verdict = match (forced, verdict) {
             (Some(Verdict::Declared), Verdict::Fail) => Verdict::Fail,
@@ -87,7 +91,12 @@ impl Context<'_> {
     }
 
     /// Value and joint interval, a note, and a verdict that does not come from comparison.
-    fn gauge(&self, room: usize, planned: &PlannedRequirement, alpha: f64) -> (Gauged, String, Option<Verdict>) {
+    fn gauge(
+        &self,
+        room: usize,
+        planned: &PlannedRequirement,
+        alpha: f64,
+    ) -> (Gauged, String, Option<Verdict>) {
         let entry = &self.world.rooms[room];
         match &planned.subject {
             Subject::Area(place, quantity) => {
@@ -105,7 +114,7 @@ impl Context<'_> {
                 (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
             }
             Subject::ColourRendering => {
-                let declared = entry.luminaires.iter().map(|&l| self.world.scene.luminaires[l].kind.declared_ra);
+                let declared = entry.luminaires.iter().map(|&l| self.declared_ra(entry, l));
                 let least = declared.collect::<Option<Vec<f64>>>().filter(|all| !all.is_empty());
                 match least {
                     Some(all) => {
@@ -113,15 +122,26 @@ impl Context<'_> {
                         (Gauged::exact(least), "declared, not computed".into(), Some(Verdict::Declared))
                     }
                     None => {
-                        let reason = Undefined::because("not declared for every luminaire type ([declared] ra)");
+                        let reason =
+                            Undefined::because("not declared for every luminaire type ([declared] ra)");
                         (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
                     }
                 }
             }
-            Subject::Missing(reason) => {
-                (Gauged::undefined(Undefined::because(reason.clone())), String::new(), Some(Verdict::NotAssessed))
-            }
+            Subject::Missing(reason) => (
+                Gauged::undefined(Undefined::because(reason.clone())),
+                String::new(),
+                Some(Verdict::NotAssessed),
+            ),
         }
+    }
+
+    /// R_a declared for a luminaire: under its type's name, under the room's, or in its file.
+    fn declared_ra(&self, room: &Room, luminaire: usize) -> Option<f64> {
+        let kind = &self.world.scene.luminaires[luminaire].kind;
+        let of =
+            |subject: &str| self.project.declared.iter().find(|d| d.subject == subject).and_then(|d| d.ra);
+        of(&kind.name).or_else(|| of(&room.name)).or(kind.declared_ra)
     }
 
     /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
@@ -167,7 +187,9 @@ impl Context<'_> {
             let planned = &self.plan.rooms[room];
             let areas = planned.areas.iter().all(|area| {
                 let weights = self.weights(area.light_scene, entry, true);
-                area.quantities.iter().all(|quantity| fine(&area::blocks(&self.answers, quantity, &weights), r))
+                area.quantities
+                    .iter()
+                    .all(|quantity| fine(&area::blocks(&self.answers, quantity, &weights), r))
             });
             let views = (0..planned.views.len()).all(|index| {
                 let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha).ugr;
@@ -220,7 +242,9 @@ impl Context<'_> {
                     n: self.answers.blocks(),
                 });
                 let blocks = area::blocks(&self.answers, entry, &weights);
-                for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max, Statistic::U0, Statistic::Ud] {
+                for statistic in
+                    [Statistic::Mean, Statistic::Min, Statistic::Max, Statistic::U0, Statistic::Ud]
+                {
                     let gauged = area::gauge(&blocks, statistic, self.alpha);
                     let ratio = matches!(statistic, Statistic::U0 | Statistic::Ud);
                     values.push(Value {
@@ -247,7 +271,12 @@ impl Context<'_> {
         }
     }
 
-    fn viewpoints(&self, room: usize, planned: &PlannedRoom, values: &mut Vec<Value>) -> Vec<ViewpointOutcome> {
+    fn viewpoints(
+        &self,
+        room: usize,
+        planned: &PlannedRoom,
+        values: &mut Vec<Value>,
+    ) -> Vec<ViewpointOutcome> {
         let mut outcomes = Vec::new();
         for (index, entry) in planned.views.iter().enumerate() {
             for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
@@ -284,13 +313,24 @@ impl Context<'_> {
         outcomes
     }
 
-    fn flux(&self, room: &Room, planned: &PlannedRoom, values: &mut Vec<Value>) -> Vec<crate::outcome::FluxBalance> {
+    fn flux(
+        &self,
+        room: &Room,
+        planned: &PlannedRoom,
+        values: &mut Vec<Value>,
+    ) -> Vec<crate::outcome::FluxBalance> {
         let mut balances = Vec::new();
         for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
             let weights = self.weights(number, room, false);
             let tasks = self.flux_on_tasks(planned, &weights);
-            let balance =
-                flux::balance(&self.answers, &self.world.scene, &light_scene.name, &weights, tasks.as_deref(), self.alpha);
+            let balance = flux::balance(
+                &self.answers,
+                &self.world.scene,
+                &light_scene.name,
+                &weights,
+                tasks.as_deref(),
+                self.alpha,
+            );
             if let Some(balance) = balance {
                 if let Some(utilisation) = balance.utilisation {
                     values.push(Value {
@@ -315,7 +355,10 @@ impl Context<'_> {
     fn flux_on_tasks(&self, planned: &PlannedRoom, weights: &[f64]) -> Option<Vec<f64>> {
         let mut sum: Option<Vec<f64>> = None;
         for area in planned.areas.iter().filter(|area| area.kind == crate::project::AreaKind::Task) {
-            let entry = area.quantities.iter().find(|q| matches!(q.quantity, Quantity::Horizontal | Quantity::Normal))?;
+            let entry = area
+                .quantities
+                .iter()
+                .find(|q| matches!(q.quantity, Quantity::Horizontal | Quantity::Normal))?;
             let blocks = area::blocks(&self.answers, entry, weights);
             let cell_m2 = area.grid.spacing_m[0] * area.grid.spacing_m[1];
             let total = sum.get_or_insert_with(|| vec![0.0; self.answers.blocks()]);
@@ -388,7 +431,8 @@ fn furniture(world: &World, room: &Room) -> Vec<Vec<DVec2>> {
     let mut corners: Vec<Vec<DVec2>> = vec![Vec::new(); mesh.surfaces.len()];
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         if mesh.surfaces[triangle.surface as usize].furniture {
-            corners[triangle.surface as usize].extend(mesh.corners(index).map(|p: DVec3| DVec2::new(p.x, p.y)));
+            corners[triangle.surface as usize]
+                .extend(mesh.corners(index).map(|p: DVec3| DVec2::new(p.x, p.y)));
         }
     }
     let (lo, hi) = room

@@ -7,7 +7,13 @@ use crate::outcome::Bias;
 use crate::project::World;
 use crate::{Method, Settings};
 
-pub(crate) fn add(biases: &mut Vec<Bias>, world: &World, settings: &Settings, answers: &Answers, emitters: &Emitters) {
+pub(crate) fn add(
+    biases: &mut Vec<Bias>,
+    world: &World,
+    settings: &Settings,
+    answers: &Answers,
+    emitters: &Emitters,
+) {
     let mut note = |what: &str, effect: String| biases.push(Bias { what: what.into(), effect });
     let scene = &world.scene;
     if settings.method == Method::Links && !scene.luminaires.is_empty() {
@@ -49,7 +55,10 @@ pub(crate) fn add(biases: &mut Vec<Bias>, world: &World, settings: &Settings, an
             && (kind.flux_lm / rated - 1.0).abs() > 0.02
         {
             let text = Bias {
-                what: format!("Luminaire {}: the intensities integrate to {:.0} lm, rated are {rated:.0} lm; the intensities were used.", kind.name, kind.flux_lm),
+                what: format!(
+                    "Luminaire {}: the intensities integrate to {:.0} lm, rated are {rated:.0} lm; the intensities were used.",
+                    kind.name, kind.flux_lm
+                ),
                 effect: format!("{:+.1} % of its light", 100.0 * (kind.flux_lm / rated - 1.0)),
             };
             if !biases.contains(&text) {

@@ -138,7 +138,9 @@ impl<'s> Emitters<'s> {
         arrival: &Arrival,
         blind: &[u32],
     ) -> f64 {
-        let Some((distance_m, triangle)) = mirror.meet(self.scene, point, arrival.direction, arrival.distance_m) else {
+        let Some((distance_m, triangle)) =
+            mirror.meet(self.scene, point, arrival.direction, arrival.distance_m)
+        else {
             return 0.0;
         };
         let cos = arrival.direction.dot(mirror.normal).abs();

@@ -21,11 +21,7 @@ impl Estimate {
         let n = blocks.len();
         let value = blocks.iter().sum::<f64>() / n as f64;
         let squares: f64 = blocks.iter().map(|x| (x - value) * (x - value)).sum();
-        let se = if n > 1 {
-            (squares / ((n - 1) as f64 * n as f64)).sqrt()
-        } else {
-            f64::INFINITY
-        };
+        let se = if n > 1 { (squares / ((n - 1) as f64 * n as f64)).sqrt() } else { f64::INFINITY };
         Self { value, se, n }
     }
 
@@ -56,9 +52,7 @@ pub fn quantile(p: f64, df: usize) -> f64 {
         let z = normal.inverse_cdf(p);
         return z + (z * z * z + z) / (4.0 * df as f64);
     }
-    StudentsT::new(0.0, 1.0, df as f64)
-        .expect("positive degrees of freedom")
-        .inverse_cdf(p)
+    StudentsT::new(0.0, 1.0, df as f64).expect("positive degrees of freedom").inverse_cdf(p)
 }
 
 /// Means of x and y over blocks with the (co)variances of the means.
@@ -84,36 +78,21 @@ impl Pair {
         let n = x.len();
         let mean = |values: &[f64]| values.iter().sum::<f64>() / n as f64;
         let (mx, my) = (mean(x), mean(y));
-        let scale = if n > 1 {
-            1.0 / ((n - 1) as f64 * n as f64)
-        } else {
-            f64::INFINITY
-        };
+        let scale = if n > 1 { 1.0 / ((n - 1) as f64 * n as f64) } else { f64::INFINITY };
         let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
         for (a, b) in x.iter().zip(y) {
             xx += (a - mx) * (a - mx);
             yy += (b - my) * (b - my);
             xy += (a - mx) * (b - my);
         }
-        Self {
-            x: mx,
-            y: my,
-            var_x: xx * scale,
-            var_y: yy * scale,
-            cov: xy * scale,
-            n,
-        }
+        Self { x: mx, y: my, var_x: xx * scale, var_y: yy * scale, cov: xy * scale, n }
     }
 
     /// x / y with the standard error of first order; exact zero error where the variances vanish.
     pub fn ratio(&self) -> Estimate {
         let ratio = self.x / self.y;
         let variance = self.var_x - 2.0 * ratio * self.cov + ratio * ratio * self.var_y;
-        Estimate {
-            value: ratio,
-            se: variance.max(0.0).sqrt() / self.y.abs(),
-            n: self.n,
-        }
+        Estimate { value: ratio, se: variance.max(0.0).sqrt() / self.y.abs(), n: self.n }
     }
 
     /// Fieller's interval of x / y: all u for which the contrast x − u·y does not differ from zero
@@ -139,12 +118,9 @@ mod tests {
 
     #[test]
     fn quantiles_match_tables_and_never_fall_below_the_normal_one() {
-        for (p, df, expected) in [
-            (0.975, 31, 2.0395),
-            (0.975, 1, 12.706),
-            (0.995, 63, 2.6561),
-            (0.9999, 63, 3.955),
-        ] {
+        for (p, df, expected) in
+            [(0.975, 31, 2.0395), (0.975, 1, 12.706), (0.995, 63, 2.6561), (0.9999, 63, 3.955)]
+        {
             assert!(
                 (quantile(p, df) - expected).abs() < 2e-3 * expected,
                 "t({p}, {df}) = {}",
@@ -161,15 +137,10 @@ mod tests {
         let (mut covered, mut ratio_covered, runs) = (0, 0, 2000);
         for run in 0..runs {
             let mut rng = Rng::new(5, run, 0);
-            let blocks: Vec<f64> = (0..32)
-                .map(|_| rng.uniform() + rng.uniform() * rng.uniform())
-                .collect();
+            let blocks: Vec<f64> = (0..32).map(|_| rng.uniform() + rng.uniform() * rng.uniform()).collect();
             let (lo, hi) = Estimate::from_blocks(&blocks).interval(0.05);
             covered += usize::from(lo <= 0.75 && 0.75 <= hi);
-            let y: Vec<f64> = blocks
-                .iter()
-                .map(|b| 1.0 + 0.3 * b + 0.1 * rng.uniform())
-                .collect();
+            let y: Vec<f64> = blocks.iter().map(|b| 1.0 + 0.3 * b + 0.1 * rng.uniform()).collect();
             let (lo, hi) = Pair::from_blocks(&blocks, &y).ratio_interval(0.05);
             let truth = 0.75 / (1.0 + 0.225 + 0.05);
             ratio_covered += usize::from(lo <= truth && truth <= hi);

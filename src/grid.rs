@@ -111,9 +111,7 @@ pub enum GridError {
     #[error("the grid needs a positive step or at least one row and one column")]
     Rule,
     /// More than [`MAX_POINTS`].
-    #[error(
-        "the grid would have {columns} × {rows} points, more than {MAX_POINTS}; use a coarser one"
-    )]
+    #[error("the grid would have {columns} × {rows} points, more than {MAX_POINTS}; use a coarser one")]
     TooMany {
         /// Points along u.
         columns: usize,
@@ -137,9 +135,7 @@ pub enum GridError {
         distance_m: f64,
     },
     /// Two edges cross or touch.
-    #[error(
-        "edges {first} and {second} of the polygon cross; list the corners in the order of the outline"
-    )]
+    #[error("edges {first} and {second} of the polygon cross; list the corners in the order of the outline")]
     SelfIntersecting {
         /// One edge, from 1: it begins at the corner of that number.
         first: usize,
@@ -160,11 +156,7 @@ pub enum GridError {
 /// if the sides' ratio is 2 or more; all in m.
 pub fn spacing_m(one_side_m: f64, other_side_m: f64) -> f64 {
     let (longer, shorter) = (one_side_m.max(other_side_m), one_side_m.min(other_side_m));
-    let d_m = if longer >= 2.0 * shorter {
-        shorter
-    } else {
-        longer
-    };
+    let d_m = if longer >= 2.0 * shorter { shorter } else { longer };
     (0.2 * 5f64.powf(d_m.log10())).min(SPACING_MAX_M)
 }
 
@@ -187,18 +179,13 @@ pub fn rectangle(
     avoid_spacing_m: Option<[f64; 2]>,
 ) -> Result<Grid, GridError> {
     let normal = unit(normal, "the normal")?;
-    let (u, v) = (
-        unit(u_edge, "the first edge")?,
-        unit(v_edge, "the second edge")?,
-    );
+    let (u, v) = (unit(u_edge, "the first edge")?, unit(v_edge, "the second edge")?);
     if !origin.is_finite() {
         return Err(GridError::NoExtent { what: "the origin" });
     }
     let cos = u.dot(v);
     if cos.abs() > 1e-6 {
-        return Err(GridError::Skewed {
-            angle_deg: cos.acos().to_degrees(),
-        });
+        return Err(GridError::Skewed { angle_deg: cos.acos().to_degrees() });
     }
     let sides_m = [u_edge.length(), v_edge.length()];
     let side_m = sides_m[0].min(sides_m[1]);
@@ -219,12 +206,7 @@ pub fn rectangle(
             excluded: None,
         })
         .collect();
-    let outline = vec![
-        origin,
-        origin + u_edge,
-        origin + u_edge + v_edge,
-        origin + v_edge,
-    ];
+    let outline = vec![origin, origin + u_edge, origin + u_edge + v_edge, origin + v_edge];
     Ok(Grid {
         origin,
         edge_u: u_edge,
@@ -245,12 +227,7 @@ pub fn rectangle(
 /// # Errors
 /// Fewer than three corners, corners off the plane, crossing edges, no point left, and those of
 /// [`rectangle`].
-pub fn polygon(
-    corners: &[DVec3],
-    normal: DVec3,
-    rule: GridRule,
-    border_m: f64,
-) -> Result<Grid, GridError> {
+pub fn polygon(corners: &[DVec3], normal: DVec3, rule: GridRule, border_m: f64) -> Result<Grid, GridError> {
     let count = corners.len();
     if count < 3 {
         return Err(GridError::Corners { corners: count });
@@ -263,11 +240,7 @@ pub fn polygon(
         .sum::<DVec3>();
     // The first of equal edges, so that a rectangle keeps the axes of its first edge or second.
     let longer = |a: DVec3, b: DVec3| {
-        if b.length() > a.length() * (1.0 + 1e-9) {
-            b
-        } else {
-            a
-        }
+        if b.length() > a.length() * (1.0 + 1e-9) { b } else { a }
     };
     let longest = (0..count).map(edge).fold(DVec3::ZERO, longer);
     let u = unit(longest, "the longest edge")?;
@@ -275,26 +248,16 @@ pub fn polygon(
     for (k, corner) in corners.iter().enumerate() {
         let distance_m = plane.dot(*corner - corners[0]).abs();
         if distance_m.is_nan() || distance_m > FLAT_M {
-            return Err(GridError::NotPlanar {
-                corner: k + 1,
-                distance_m,
-            });
+            return Err(GridError::NotPlanar { corner: k + 1, distance_m });
         }
     }
-    let v = if plane.dot(facing) < 0.0 {
-        u.cross(plane)
-    } else {
-        plane.cross(u)
-    };
+    let v = if plane.dot(facing) < 0.0 { u.cross(plane) } else { plane.cross(u) };
     let flat: Vec<DVec2> = corners
         .iter()
         .map(|corner| DVec2::new(u.dot(*corner - corners[0]), v.dot(*corner - corners[0])))
         .collect();
     if let Some((first, second)) = crossing(&flat) {
-        return Err(GridError::SelfIntersecting {
-            first: first + 1,
-            second: second + 1,
-        });
+        return Err(GridError::SelfIntersecting { first: first + 1, second: second + 1 });
     }
     let low = flat.iter().copied().reduce(DVec2::min).unwrap_or_default();
     let size = flat.iter().copied().reduce(DVec2::max).unwrap_or_default() - low;
@@ -330,11 +293,7 @@ pub fn list(points: &[(DVec3, Option<DVec3>)], default_normal: DVec3) -> Grid {
         })
         .collect();
     Grid {
-        origin: points
-            .iter()
-            .map(|point| point.position)
-            .reduce(DVec3::min)
-            .unwrap_or_default(),
+        origin: points.iter().map(|point| point.position).reduce(DVec3::min).unwrap_or_default(),
         edge_u: DVec3::ZERO,
         edge_v: DVec3::ZERO,
         normal,
@@ -365,10 +324,7 @@ fn counts(
             .checked_mul(counts[1])
             .filter(|points| *points <= MAX_POINTS)
             .map(|_| counts)
-            .ok_or(GridError::TooMany {
-                columns: counts[0],
-                rows: counts[1],
-            })
+            .ok_or(GridError::TooMany { columns: counts[0], rows: counts[1] })
     };
     counts = affordable(counts)?;
     if matches!(rule, GridRule::Count(_)) {
@@ -376,9 +332,7 @@ fn counts(
     }
     for axis in 0..2 {
         let avoid_m = avoid_spacing_m.map_or(0.0, |avoid| avoid[axis]);
-        if avoid_m > 0.0
-            && (sides_m[axis] / counts[axis] as f64 / avoid_m - 1.0).abs() < COINCIDENCE
-        {
+        if avoid_m > 0.0 && (sides_m[axis] / counts[axis] as f64 / avoid_m - 1.0).abs() < COINCIDENCE {
             counts[axis] += 1;
         }
     }

@@ -23,7 +23,13 @@ pub struct Judged {
 }
 
 /// Judges a gauged quantity whose interval is the joint one.
-pub fn judge(gauged: &Gauged, quantity: Quantity, statistic: Statistic, bound: Bound, compare: Compare) -> Judged {
+pub fn judge(
+    gauged: &Gauged,
+    quantity: Quantity,
+    statistic: Statistic,
+    bound: Bound,
+    compare: Compare,
+) -> Judged {
     let Ok(value) = gauged.value else {
         return Judged { verdict: Verdict::Undefined, at_the_limit: false, margin: None };
     };
@@ -39,7 +45,8 @@ pub fn judge(gauged: &Gauged, quantity: Quantity, statistic: Statistic, bound: B
     let margin = sign * (value - limit) / scale;
     let complies = |x: f64| sign * (round(x) - limit) >= 0.0;
     let by_value = if complies(value) { Verdict::Pass } else { Verdict::Fail };
-    let (certain_pass, certain_fail) = (complies(gauged.lo) && complies(gauged.hi), !complies(gauged.lo) && !complies(gauged.hi));
+    let (certain_pass, certain_fail) =
+        (complies(gauged.lo) && complies(gauged.hi), !complies(gauged.lo) && !complies(gauged.hi));
     let indifference = if quantity == Quantity::Ugr { INDIFFERENCE_UGR } else { INDIFFERENCE * limit.abs() };
     let near = (gauged.lo - limit).abs() <= indifference && (gauged.hi - limit).abs() <= indifference;
     let verdict = if certain_pass || certain_fail || near { by_value } else { Verdict::Undecided };

@@ -122,7 +122,8 @@ fn list(errors: &[PlanError]) -> String {
 pub fn run(project: &Project, settings: &Settings, watch: &Watch) -> Result<Outcome, RunError> {
     let planned: Vec<Result<Plan, Vec<PlanError>>> =
         project.worlds.iter().map(|world| plan::plan(project, world)).collect();
-    let errors: Vec<PlanError> = planned.iter().filter_map(|plan| plan.as_ref().err()).flatten().cloned().collect();
+    let errors: Vec<PlanError> =
+        planned.iter().filter_map(|plan| plan.as_ref().err()).flatten().cloned().collect();
     if !errors.is_empty() {
         return Err(RunError::Plan(errors));
     }
@@ -130,7 +131,9 @@ pub fn run(project: &Project, settings: &Settings, watch: &Watch) -> Result<Outc
     let started = Instant::now();
     for (index, (world, plan)) in project.worlds.iter().zip(planned.into_iter().flatten()).enumerate() {
         let stop = solve_world(project, world, &plan, settings, watch, started, index, &mut total);
-        total.plan.extend(plan.reasons.into_iter().filter(|reason| index == 0 || !reason.contains("receivers")));
+        total
+            .plan
+            .extend(plan.reasons.into_iter().filter(|reason| index == 0 || !reason.contains("receivers")));
         total.stopped = total.stopped.max(Some(stop));
     }
     total.plan.dedup();
@@ -162,7 +165,10 @@ struct Total {
 }
 
 /// The loop: blocks until every verdict is certain, the goal is reached, or a limit is.
-#[allow(clippy::too_many_arguments, reason = "called once; the line of data flow is easier to read than a struct")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "called once; the line of data flow is easier to read than a struct"
+)]
 fn solve_world(
     project: &Project,
     world: &World,
@@ -187,7 +193,14 @@ fn solve_world(
     loop {
         let finished = extend(&prepared, &mut sheets, target, settings, watch, started, |blocks| {
             let room = world.rooms.first().map_or("", |room| room.name.as_str());
-            (watch.progress)(Progress { world: index, worlds: project.worlds.len(), room, blocks, target, open });
+            (watch.progress)(Progress {
+                world: index,
+                worlds: project.worlds.len(),
+                room,
+                blocks,
+                target,
+                open,
+            });
         });
         let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
         let context = Context {
@@ -200,14 +213,17 @@ fn solve_world(
             alpha,
             joint_alpha: judge::look_alpha(alpha, look),
         };
-        let required: Vec<Vec<Requirement>> = (0..world.rooms.len()).map(|room| context.requirements(room)).collect();
+        let required: Vec<Vec<Requirement>> =
+            (0..world.rooms.len()).map(|room| context.requirements(room)).collect();
         open = required.iter().flatten().filter(|r| r.verdict == Verdict::Undecided).count();
         let decided = open == 0 && required.iter().flatten().next().is_some();
         let stop = match (finished, project.accuracy.goal) {
             (Some(stop), _) => Some(stop),
             (None, _) if settings.exact_blocks.is_some() => Some(Stop::Asked),
             (None, Goal::Verdict) if decided => Some(Stop::Certain),
-            (None, Goal::Verdict) if required.iter().all(Vec::is_empty) && context.accurate(settings.relative) => {
+            (None, Goal::Verdict)
+                if required.iter().all(Vec::is_empty) && context.accurate(settings.relative) =>
+            {
                 Some(Stop::Accurate)
             }
             (None, Goal::Relative(r)) if context.accurate(r) => Some(Stop::Accurate),
@@ -248,7 +264,9 @@ fn extend(
     while sheets.len() < target {
         let first = sheets.len();
         let last = (first + BATCH).min(target);
-        sheets.par_extend((first as u64..last as u64).into_par_iter().map(|block| solve::answer(prepared, block)));
+        sheets.par_extend(
+            (first as u64..last as u64).into_par_iter().map(|block| solve::answer(prepared, block)),
+        );
         tell(sheets.len());
         let enough = sheets.len() >= settings.least_blocks.min(target);
         if enough && watch.interrupted.load(Ordering::Relaxed) {

@@ -48,11 +48,7 @@ pub struct Maintenance {
 
 impl Maintenance {
     /// A new installation: all factors 1.
-    pub const NEW: Self = Self {
-        llmf: 1.0,
-        lsf: 1.0,
-        lmf: 1.0,
-    };
+    pub const NEW: Self = Self { llmf: 1.0, lsf: 1.0, lmf: 1.0 };
 
     /// LLMF · LSF · LMF.
     pub fn factor(self) -> f64 {

@@ -1,2 +1,321 @@
-//! Arguments → library → printed diagnostics → exit code.
-fn main() {}
+//! Arguments → library → printed diagnostics → exit code. Results go to standard output, progress
+//! and diagnostics to standard error.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "the one place that prints")]
+
+mod args;
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use gershun::norm::{Bound, Standard, bundled};
+use gershun::outcome::{Outcome, Verdict};
+use gershun::project::{LoadOptions, Project, load};
+use gershun::report::{self, Colour, Lang, Style};
+use gershun::{Progress, Watch};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm};
+
+/// Exit codes of the contract with scripts.
+const COMPLIES: u8 = 0;
+const FAILS: u8 = 1;
+const BAD_INPUT: u8 = 2;
+const UNDECIDED: u8 = 3;
+const INTERRUPTED: u8 = 130;
+
+fn main() -> ExitCode {
+    let code = match Cli::parse().command {
+        Command::Check(check) => run_checks(&check),
+        Command::New { dir } => new_project(&dir),
+        Command::Schema => say(report::schema()),
+        Command::Norm(Norm::List) => list_norms(),
+        Command::Norm(Norm::Show { name, row }) => show_norm(&name, row.as_deref()),
+    };
+    ExitCode::from(code)
+}
+
+/// Prints to standard output; a closed pipe (`| head`) is no error.
+fn say(text: &str) -> u8 {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            complain(&format!("cannot print: {error}"))
+        }
+        _ => COMPLIES,
+    }
+}
+
+fn complain(message: &str) -> u8 {
+    eprintln!("error: {message}");
+    BAD_INPUT
+}
+
+fn run_checks(check: &Check) -> u8 {
+    if check.out.is_some() && check.projects.len() > 1 {
+        return complain("--out takes one project; without it each report goes to out/<project name>");
+    }
+    if let Some(threads) = check.threads
+        && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()
+    {
+        return complain(&format!("cannot start {threads} threads: {error}"));
+    }
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = interrupted.clone();
+    // A second interruption ends the program at once.
+    let handler = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+    });
+    if let Err(error) = handler {
+        eprintln!("warning: interruption will not keep results: {error}");
+    }
+    // Load everything first: mistakes of all projects are reported before any is solved.
+    let loaded: Vec<Option<Project>> = check.projects.iter().map(|path| load_one(path, check)).collect();
+    let Some(projects) = loaded.into_iter().collect::<Option<Vec<Project>>>() else {
+        return BAD_INPUT;
+    };
+    let mut worst = COMPLIES;
+    for project in projects {
+        let code = check_one(project, check, &interrupted);
+        worst = graver(worst, code);
+        if code == INTERRUPTED {
+            break;
+        }
+    }
+    worst
+}
+
+/// Bad input before failure before undecided; an interruption is reported as such.
+fn graver(a: u8, b: u8) -> u8 {
+    let order =
+        |code: u8| [COMPLIES, UNDECIDED, FAILS, BAD_INPUT, INTERRUPTED].iter().position(|&c| c == code);
+    if order(a) >= order(b) { a } else { b }
+}
+
+fn load_one(path: &Path, check: &Check) -> Option<Project> {
+    match load(path, &LoadOptions { allow_outside: check.allow_outside }) {
+        Ok(project) => Some(project),
+        Err(diagnostics) => {
+            for diagnostic in &diagnostics {
+                eprintln!("{diagnostic}\n");
+            }
+            let count = diagnostics.len();
+            eprintln!(
+                "{count} mistake{} in {}; nothing was computed",
+                if count == 1 { "" } else { "s" },
+                path.display()
+            );
+            None
+        }
+    }
+}
+
+fn check_one(mut project: Project, check: &Check, interrupted: &AtomicBool) -> u8 {
+    let settings = check.settings(&mut project);
+    if check.explain_plan {
+        return explain(&project);
+    }
+    let started = Instant::now();
+    let bar = bar(check.quiet);
+    let tell = |progress: Progress| show(&bar, started, &progress);
+    let outcome = match gershun::run(&project, &settings, &Watch { progress: &tell, interrupted }) {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            bar.finish_and_clear();
+            return complain(&error.to_string());
+        }
+    };
+    bar.finish_and_clear();
+    let out = check.out.clone().unwrap_or_else(|| Path::new("out").join(folder_name(&outcome.info.name)));
+    let options = report::Options {
+        languages: check.lang.map(args::LangChoice::lang).into_iter().collect(),
+        dialect: if check.csv_excel { report::csv::Dialect::Excel } else { report::csv::Dialect::Standard },
+    };
+    if let Err(error) = report::write(&outcome, &out, &options) {
+        return complain(&error.to_string());
+    }
+    let printed = print(&outcome, check, &out);
+    if printed != COMPLIES {
+        return printed;
+    }
+    if interrupted.load(Ordering::Relaxed) {
+        return INTERRUPTED;
+    }
+    match outcome.verdict() {
+        Some(Verdict::Fail) => FAILS,
+        Some(Verdict::Undecided | Verdict::Undefined) => UNDECIDED,
+        Some(Verdict::Pass | Verdict::Declared | Verdict::NotAssessed) | None => COMPLIES,
+    }
+}
+
+/// A bar that appears once a run has taken a second.
+fn bar(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:24} {pos}/{len} blocks · {msg} · {elapsed}");
+    let bar = ProgressBar::hidden();
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+fn show(bar: &ProgressBar, started: Instant, progress: &Progress) {
+    if bar.is_hidden() && started.elapsed() > Duration::from_secs(1) && std::io::stderr().is_terminal() {
+        bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
+    }
+    bar.set_length(progress.target as u64);
+    bar.set_position(progress.blocks as u64);
+    let room = if progress.worlds > 1 {
+        format!("{} ({} of {})", progress.room, progress.world + 1, progress.worlds)
+    } else {
+        progress.room.to_owned()
+    };
+    bar.set_message(if progress.open > 0 { format!("{room}, {} still open", progress.open) } else { room });
+}
+
+fn print(outcome: &Outcome, check: &Check, out: &Path) -> u8 {
+    if check.quiet && check.format == Format::Human {
+        return COMPLIES;
+    }
+    let lang = check.lang.map_or_else(
+        || outcome.info.language.first().and_then(|code| Lang::parse(code)).unwrap_or(Lang::En),
+        args::LangChoice::lang,
+    );
+    match check.format {
+        Format::Human => {
+            let mut text = report::table(outcome, Style { lang, colour: colour(check.color) });
+            if check.verbose {
+                for reason in &outcome.plan {
+                    text.push_str(&format!("plan: {reason}\n"));
+                }
+                for bias in &outcome.biases {
+                    text.push_str(&format!("bias: {} ({})\n", bias.what, bias.effect));
+                }
+            }
+            let code = say(&text);
+            eprintln!("report: {}", out.join("report.html").display());
+            code
+        }
+        Format::Json => match std::fs::read_to_string(out.join("result.json")) {
+            Ok(text) => say(&text),
+            Err(error) => complain(&format!("cannot read back the result: {error}")),
+        },
+        Format::Junit => say(&report::junit(outcome)),
+        Format::Sarif => say(&report::sarif(outcome)),
+    }
+}
+
+fn colour(choice: ColourChoice) -> Colour {
+    let wanted = match choice {
+        ColourChoice::Always => true,
+        ColourChoice::Never => false,
+        ColourChoice::Auto => std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+    };
+    if wanted { Colour::Ansi } else { Colour::Plain }
+}
+
+/// A project's name as a folder: no separators, never empty or hidden.
+fn folder_name(name: &str) -> PathBuf {
+    let clean: String = name
+        .trim()
+        .chars()
+        .map(|c| if c.is_alphanumeric() || "-_ .".contains(c) { c } else { '_' })
+        .collect();
+    let clean = clean.trim_start_matches('.').trim();
+    PathBuf::from(if clean.is_empty() { "project" } else { clean })
+}
+
+fn explain(project: &Project) -> u8 {
+    let mut text = String::new();
+    for world in &project.worlds {
+        match gershun::plan::plan(project, world) {
+            Ok(plan) => {
+                for room in &world.rooms {
+                    text.push_str(&format!("room {}\n", room.name));
+                }
+                for reason in &plan.reasons {
+                    text.push_str(&format!("  {reason}\n"));
+                }
+            }
+            Err(errors) => {
+                for error in errors {
+                    complain(&error.to_string());
+                }
+                return BAD_INPUT;
+            }
+        }
+    }
+    say(&text)
+}
+
+fn new_project(dir: &Path) -> u8 {
+    if dir.exists() {
+        return complain(&format!("{} exists already; name a new folder", dir.display()));
+    }
+    let text = include_str!("../scenes/box/project.toml");
+    let made = std::fs::create_dir_all(dir).and_then(|()| std::fs::write(dir.join("project.toml"), text));
+    match made {
+        Ok(()) => say(&format!("{}\n", dir.join("project.toml").display())),
+        Err(error) => complain(&format!("{}: {error}", dir.display())),
+    }
+}
+
+fn list_norms() -> u8 {
+    let mut text = String::new();
+    for (id, source) in bundled() {
+        match Standard::parse(source, id) {
+            Ok(standard) => {
+                text.push_str(&format!("{id}  {} ({} rows)\n", standard.title, standard.rows.len()))
+            }
+            Err(error) => return complain(&error.to_string()),
+        }
+    }
+    say(&text)
+}
+
+fn show_norm(name: &str, row: Option<&str>) -> u8 {
+    let text = match bundled().iter().find(|(id, _)| *id == name) {
+        Some((_, text)) => (*text).to_owned(),
+        None => match std::fs::read_to_string(name) {
+            Ok(text) => text,
+            Err(error) => {
+                return complain(&format!(
+                    "\"{name}\" is neither a bundled norm (see `gershun norm list`) nor a file: {error}"
+                ));
+            }
+        },
+    };
+    let standard = match Standard::parse(&text, name) {
+        Ok(standard) => standard,
+        Err(error) => return complain(&error.to_string()),
+    };
+    let rows: Vec<_> =
+        standard.rows.iter().filter(|r| row.is_none_or(|wanted| r.reference == wanted)).collect();
+    if rows.is_empty() {
+        return complain(&format!(
+            "{name} has no row \"{}\"; `gershun norm show {name}` lists them",
+            row.unwrap_or("")
+        ));
+    }
+    let mut text = format!("{}, {}\n{}\n", standard.title, standard.edition, standard.note);
+    for entry in rows {
+        text.push_str(&format!("\n{}  {}: {}\n", entry.reference, entry.area, entry.task));
+        let limits = if row.is_some() { standard.requirements(entry) } else { entry.limits.clone() };
+        for limit in limits {
+            let bound = match limit.bound {
+                Bound::Min(value) => format!(">= {value}"),
+                Bound::Max(value) => format!("<= {value}"),
+            };
+            let zone = format!("{:?}", limit.zone).to_lowercase();
+            let quantity = format!("{} {}", limit.quantity.key(), limit.statistic.key());
+            text.push_str(&format!("    {zone:<12} {quantity:<14} {bound:<9} {:?}\n", limit.verified));
+        }
+    }
+    say(&text)
+}

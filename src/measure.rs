@@ -96,7 +96,8 @@ impl Answers<'_> {
 }
 
 /// Weights of the channels for a light scene: the group's factor, and for maintained values
-/// MF = LLMF·LSF·LMF of the type times the room's RSMF. Emitting surfaces always count as they are.
+/// MF = LLMF·LSF·LMF of the type times the room's RSMF. Emitting surfaces have the group of their
+/// material's name and no maintenance factor.
 pub fn weights(world: &World, light_scene: &LightScene, room: &Room, maintained: bool) -> Vec<f64> {
     let scene = &world.scene;
     scene
@@ -112,7 +113,7 @@ pub fn weights(world: &World, light_scene: &LightScene, room: &Room, maintained:
                 };
                 light_scene.factor(group) * maintenance
             }
-            Channel::Surfaces { .. } => 1.0,
+            Channel::Surfaces { material } => light_scene.factor(&scene.materials[*material].name),
         })
         .collect()
 }

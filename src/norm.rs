@@ -17,10 +17,7 @@ use crate::quantity::{Quantity, Statistic};
 
 /// The standards that ship with the program: name and TOML text.
 pub fn bundled() -> &'static [(&'static str, &'static str)] {
-    &[(
-        "en-12464-1-2021",
-        include_str!("../standards/en-12464-1-2021.toml"),
-    )]
+    &[("en-12464-1-2021", include_str!("../standards/en-12464-1-2021.toml"))]
 }
 
 /// A standard, or a user's own set of rows.
@@ -142,12 +139,7 @@ impl Standard {
     /// has no such rule.
     pub fn surrounding_illuminance(&self, task_lx: f64) -> Option<f64> {
         let steps = &self.application.surrounding.as_ref()?.illuminance_lx.value;
-        Some(
-            steps
-                .iter()
-                .find(|[from_lx, _]| task_lx >= *from_lx)
-                .map_or(task_lx, |[_, lx]| *lx),
-        )
+        Some(steps.iter().find(|[from_lx, _]| task_lx >= *from_lx).map_or(task_lx, |[_, lx]| *lx))
     }
 
     /// All limits for an area judged by a row: the row's own, then those for surrounding and
@@ -164,14 +156,9 @@ impl Standard {
             (Zone::Ceiling, &rules.ceiling_u0),
             (Zone::Cylindrical, &rules.cylindrical_u0),
         ] {
-            let mean = row
-                .limits
-                .iter()
-                .find(|limit| limit.zone == zone && limit.statistic == Statistic::Mean);
-            let own = row
-                .limits
-                .iter()
-                .any(|limit| limit.zone == zone && limit.statistic == Statistic::U0);
+            let mean =
+                row.limits.iter().find(|limit| limit.zone == zone && limit.statistic == Statistic::Mean);
+            let own = row.limits.iter().any(|limit| limit.zone == zone && limit.statistic == Statistic::U0);
             if let (Some(mean), Some(u0), false) = (mean, uniformity, own) {
                 limits.push(minimum(
                     zone,
@@ -187,8 +174,7 @@ impl Standard {
 
     /// Limits of surrounding and background that follow from a task's mean illuminance.
     fn around(&self, task: &Limit) -> Vec<Limit> {
-        let (Some(surrounding), Bound::Min(task_lx)) = (&self.application.surrounding, task.bound)
-        else {
+        let (Some(surrounding), Bound::Min(task_lx)) = (&self.application.surrounding, task.bound) else {
             return Vec::new();
         };
         let lx = self.surrounding_illuminance(task_lx).unwrap_or(task_lx);
@@ -197,30 +183,12 @@ impl Standard {
         let u0 = &surrounding.u0;
         let mut limits = vec![
             minimum(Zone::Surrounding, quantity, Statistic::Mean, lx, known),
-            minimum(
-                Zone::Surrounding,
-                quantity,
-                Statistic::U0,
-                u0.value,
-                u0.verified,
-            ),
+            minimum(Zone::Surrounding, quantity, Statistic::U0, u0.value, u0.verified),
         ];
         if let Some(Background { fraction, u0, .. }) = &self.application.background {
             let known = known.min(fraction.verified);
-            limits.push(minimum(
-                Zone::Background,
-                quantity,
-                Statistic::Mean,
-                lx * fraction.value,
-                known,
-            ));
-            limits.push(minimum(
-                Zone::Background,
-                quantity,
-                Statistic::U0,
-                u0.value,
-                u0.verified,
-            ));
+            limits.push(minimum(Zone::Background, quantity, Statistic::Mean, lx * fraction.value, known));
+            limits.push(minimum(Zone::Background, quantity, Statistic::U0, u0.value, u0.verified));
         }
         limits
     }
@@ -249,20 +217,8 @@ impl Verified {
 }
 
 /// A lower limit.
-fn minimum(
-    zone: Zone,
-    quantity: Quantity,
-    statistic: Statistic,
-    value: f64,
-    verified: Verified,
-) -> Limit {
-    Limit {
-        zone,
-        quantity,
-        statistic,
-        bound: Bound::Min(value),
-        verified,
-    }
+fn minimum(zone: Zone, quantity: Quantity, statistic: Statistic, value: f64, verified: Verified) -> Limit {
+    Limit { zone, quantity, statistic, bound: Bound::Min(value), verified }
 }
 
 #[cfg(test)]
@@ -288,28 +244,15 @@ mod tests {
             assert_eq!(standard.id, *name);
             for row in &standard.rows {
                 for statistic in [Statistic::Mean, Statistic::U0] {
-                    assert!(
-                        limit_of(&row.limits, Zone::Task, statistic).is_some(),
-                        "{}",
-                        row.reference
-                    );
+                    assert!(limit_of(&row.limits, Zone::Task, statistic).is_some(), "{}", row.reference);
                 }
-                assert!(
-                    limit_of(&row.limits, Zone::Room, Statistic::Value).is_some(),
-                    "{}",
-                    row.reference
-                );
+                assert!(limit_of(&row.limits, Zone::Room, Statistic::Value).is_some(), "{}", row.reference);
                 assert!(
                     limit_of(&row.limits, Zone::Declared, Statistic::Value).is_some(),
                     "{}",
                     row.reference
                 );
-                assert_eq!(
-                    row.verified == Verified::Unverified,
-                    row.sources.is_empty(),
-                    "{}",
-                    row.reference
-                );
+                assert_eq!(row.verified == Verified::Unverified, row.sources.is_empty(), "{}", row.reference);
             }
         }
     }
@@ -317,35 +260,19 @@ mod tests {
     #[test]
     fn the_rows_of_en_12464_1_carry_their_corrections() {
         let standard = en();
-        let em = |reference: &str| {
-            standard
-                .row(reference)
-                .and_then(Row::illuminance)
-                .map(|limit| limit.bound)
-        };
+        let em =
+            |reference: &str| standard.row(reference).and_then(Row::illuminance).map(|limit| limit.bound);
         assert_eq!(em("34.2"), Some(Bound::Min(500.0)));
-        assert_eq!(
-            em("12.1"),
-            Some(Bound::Min(200.0)),
-            "100 lx is the 2011 edition"
-        );
+        assert_eq!(em("12.1"), Some(Bound::Min(200.0)), "100 lx is the 2011 edition");
         assert_eq!(em("34.5"), None, "split into 34.5.1 and 34.5.2");
         assert!(em("34.5.1").is_some() && em("34.5.2").is_some());
         assert_eq!(em("13.1"), None, "a row of the 2011 edition");
-        let ra = |reference| {
-            limit_of(
-                &standard.row(reference).unwrap().limits,
-                Zone::Declared,
-                Statistic::Value,
-            )
-        };
+        let ra =
+            |reference| limit_of(&standard.row(reference).unwrap().limits, Zone::Declared, Statistic::Value);
         assert_eq!(ra("12.2").unwrap().0, Bound::Min(80.0));
         assert_eq!(standard.row("9.1").unwrap().plane_m, Some(0.0));
         assert_eq!(standard.row("34.2").unwrap().plane_m, None);
-        assert_eq!(
-            standard.row("34.2").unwrap().modified_lx,
-            Some((1000.0, Verified::Unverified))
-        );
+        assert_eq!(standard.row("34.2").unwrap().modified_lx, Some((1000.0, Verified::Unverified)));
     }
 
     #[test]
@@ -353,35 +280,17 @@ mod tests {
         let standard = en();
         let limits = standard.requirements(standard.row("34.2").unwrap());
         let limit = |zone, statistic| limit_of(&limits, zone, statistic).unwrap();
-        assert_eq!(
-            limit(Zone::Task, Statistic::Mean),
-            (Bound::Min(500.0), Verified::TwoSources)
-        );
-        assert_eq!(
-            limit(Zone::Task, Statistic::U0),
-            (Bound::Min(0.6), Verified::TwoSources)
-        );
-        assert_eq!(
-            limit(Zone::Room, Statistic::Value),
-            (Bound::Max(19.0), Verified::TwoSources)
-        );
-        assert_eq!(
-            limit(Zone::Surrounding, Statistic::Mean),
-            (Bound::Min(300.0), Verified::Unverified)
-        );
+        assert_eq!(limit(Zone::Task, Statistic::Mean), (Bound::Min(500.0), Verified::TwoSources));
+        assert_eq!(limit(Zone::Task, Statistic::U0), (Bound::Min(0.6), Verified::TwoSources));
+        assert_eq!(limit(Zone::Room, Statistic::Value), (Bound::Max(19.0), Verified::TwoSources));
+        assert_eq!(limit(Zone::Surrounding, Statistic::Mean), (Bound::Min(300.0), Verified::Unverified));
         assert_eq!(limit(Zone::Surrounding, Statistic::U0).0, Bound::Min(0.4));
-        assert_eq!(
-            limit(Zone::Background, Statistic::Mean).1,
-            Verified::Unverified
-        );
+        assert_eq!(limit(Zone::Background, Statistic::Mean).1, Verified::Unverified);
         let (Bound::Min(background_lx), _) = limit(Zone::Background, Statistic::Mean) else {
             panic!("a minimum")
         };
         assert!((background_lx - 100.0).abs() < 1e-9, "{background_lx}");
-        assert_eq!(
-            limit(Zone::Walls, Statistic::Mean),
-            (Bound::Min(150.0), Verified::Unverified)
-        );
+        assert_eq!(limit(Zone::Walls, Statistic::Mean), (Bound::Min(150.0), Verified::Unverified));
         for zone in [Zone::Walls, Zone::Ceiling, Zone::Cylindrical] {
             assert_eq!(limit(zone, Statistic::U0).0, Bound::Min(0.1));
         }

@@ -142,13 +142,17 @@ pub enum PlanError {
         error: GridError,
     },
     /// Every point is excluded.
-    #[error("area \"{area}\": every grid point lies inside furniture or another area; move it or refine its grid")]
+    #[error(
+        "area \"{area}\": every grid point lies inside furniture or another area; move it or refine its grid"
+    )]
     NoPoints {
         /// Area name.
         area: String,
     },
     /// A row that does not exist.
-    #[error("norm {standard} has no row \"{row}\" (asked for by {by}); `gershun norm show {standard}` lists its rows")]
+    #[error(
+        "norm {standard} has no row \"{row}\" (asked for by {by}); `gershun norm show {standard}` lists its rows"
+    )]
     NoRow {
         /// Norm key.
         standard: String,
@@ -212,7 +216,9 @@ fn explain(project: &Project, world: &World, plan: &mut Plan) {
     ));
     say("Every surface stores one number a side: all scattering materials are diffuse, so their luminance has no direction.".into());
     if specular > 0 {
-        say(format!("{specular} specular surfaces store nothing: rays are followed through them, and luminaires are imaged in their planes."));
+        say(format!(
+            "{specular} specular surfaces store nothing: rays are followed through them, and luminaires are imaged in their planes."
+        ));
     } else {
         say("No surface is specular: rays end at the first surface.".into());
     }

@@ -74,16 +74,9 @@ impl Statistic {
 
     /// The statistic of a key; `None` for anything else.
     pub fn parse(key: &str) -> Option<Self> {
-        [
-            Self::Mean,
-            Self::Min,
-            Self::Max,
-            Self::U0,
-            Self::Ud,
-            Self::Value,
-        ]
-        .into_iter()
-        .find(|statistic| statistic.key() == key)
+        [Self::Mean, Self::Min, Self::Max, Self::U0, Self::Ud, Self::Value]
+            .into_iter()
+            .find(|statistic| statistic.key() == key)
     }
 }
 
@@ -119,19 +112,12 @@ impl Quantity {
             ("modelling", None) => Some(Self::Modelling),
             ("UGR", None) => Some(Self::Ugr),
             ("R_a", None) => Some(Self::ColourRendering),
-            ("E_v", Some(azimuth)) => Some(Self::Vertical {
-                azimuth_deg: finite(azimuth)?,
-            }),
-            ("E_semi", Some(azimuth)) => Some(Self::Semicylindrical {
-                azimuth_deg: finite(azimuth)?,
-            }),
+            ("E_v", Some(azimuth)) => Some(Self::Vertical { azimuth_deg: finite(azimuth)? }),
+            ("E_semi", Some(azimuth)) => Some(Self::Semicylindrical { azimuth_deg: finite(azimuth)? }),
             ("L", Some(angles)) => {
                 let (azimuth, tilt) = angles.split_once(',')?;
                 let tilt_deg = finite(tilt).filter(|tilt| tilt.abs() <= 90.0)?;
-                Some(Self::Luminance {
-                    azimuth_deg: finite(azimuth)?,
-                    tilt_deg,
-                })
+                Some(Self::Luminance { azimuth_deg: finite(azimuth)?, tilt_deg })
             }
             _ => None,
         }
@@ -148,10 +134,7 @@ impl Quantity {
             Self::Hemispherical => "E_hemi".into(),
             Self::Spherical => "E_sph".into(),
             Self::Modelling => "modelling".into(),
-            Self::Luminance {
-                azimuth_deg,
-                tilt_deg,
-            } => format!("L@{azimuth_deg},{tilt_deg}"),
+            Self::Luminance { azimuth_deg, tilt_deg } => format!("L@{azimuth_deg},{tilt_deg}"),
             Self::Ugr => "UGR".into(),
             Self::ColourRendering => "R_a".into(),
         }
@@ -194,9 +177,7 @@ mod tests {
             let quantity = Quantity::parse(text).unwrap_or_else(|| panic!("{text} must parse"));
             assert_eq!(quantity.key(), text);
         }
-        for text in [
-            "", "E", "E_v", "E_v@", "E_v@nan", "E_h@3", "L@1", "L@1,91", "e_h",
-        ] {
+        for text in ["", "E", "E_v", "E_v@", "E_v@nan", "E_h@3", "L@1", "L@1,91", "e_h"] {
             assert!(Quantity::parse(text).is_none(), "{text} must be refused");
         }
     }

@@ -72,11 +72,7 @@ pub enum Kernel {
 impl Demand {
     /// Number of rows of a sheet.
     pub fn rows(&self) -> usize {
-        self.receivers
-            .iter()
-            .map(|receiver| receiver.kernels.len())
-            .sum::<usize>()
-            + self.rays.len()
+        self.receivers.iter().map(|receiver| receiver.kernels.len()).sum::<usize>() + self.rays.len()
     }
 
     /// First row of each receiver.
@@ -114,11 +110,7 @@ impl Kernel {
             Self::Hemispherical { .. } => self.response(direction) * FRAC_1_PI,
             Self::Semicylindrical { axis, facing } => {
                 let sin = axis.cross(direction).length();
-                let cos_azimuth = if sin > 0.0 {
-                    facing.dot(direction) / sin
-                } else {
-                    0.0
-                };
+                let cos_azimuth = if sin > 0.0 { facing.dot(direction) / sin } else { 0.0 };
                 (1.0 + cos_azimuth) * 0.25 * FRAC_1_PI
             }
             Self::Cylindrical { .. } | Self::Spherical => 0.25 * FRAC_1_PI,
@@ -128,9 +120,7 @@ impl Kernel {
     /// Draws a direction of arrival.
     pub fn sample(&self, u: [f64; 3]) -> DVec3 {
         match *self {
-            Self::Planar { normal } => {
-                sphere::frame(normal) * sphere::cosine_hemisphere([u[0], u[1]])
-            }
+            Self::Planar { normal } => sphere::frame(normal) * sphere::cosine_hemisphere([u[0], u[1]]),
             Self::Hemispherical { axis } => {
                 let cos = 2.0 * u[0].sqrt() - 1.0;
                 let sin = (1.0 - cos * cos).max(0.0).sqrt();
@@ -163,10 +153,7 @@ mod tests {
         [
             Kernel::Planar { normal: TILTED },
             Kernel::Cylindrical { axis: TILTED },
-            Kernel::Semicylindrical {
-                axis: TILTED,
-                facing,
-            },
+            Kernel::Semicylindrical { axis: TILTED, facing },
             Kernel::Hemispherical { axis: TILTED },
             Kernel::Spherical,
         ]
@@ -179,10 +166,7 @@ mod tests {
             let (mut response, mut density) = (0.0, 0.0);
             for i in 0..n {
                 for j in 0..n {
-                    let u = [
-                        (f64::from(i) + 0.5) / f64::from(n),
-                        (f64::from(j) + 0.5) / f64::from(n),
-                    ];
+                    let u = [(f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n)];
                     let solid_angle = 4.0 * PI / f64::from(n * n);
                     response += kernel.response(sphere::uniform_sphere(u)) * solid_angle;
                     density += kernel.pdf(sphere::uniform_sphere(u)) * solid_angle;
@@ -201,24 +185,18 @@ mod tests {
             let (n, mut rng, mut sum) = (200_000, Rng::new(3, 1, 4), 0.0);
             for _ in 0..n {
                 let direction = kernel.sample(rng.uniforms());
-                sum +=
-                    kernel.response(direction) / kernel.pdf(direction) * (1.0 + a.dot(direction));
+                sum += kernel.response(direction) / kernel.pdf(direction) * (1.0 + a.dot(direction));
             }
             let mut exact = 0.0;
             for i in 0..400 {
                 for j in 0..400 {
-                    let d = sphere::uniform_sphere([
-                        (f64::from(i) + 0.5) / 400.0,
-                        (f64::from(j) + 0.5) / 400.0,
-                    ]);
+                    let d =
+                        sphere::uniform_sphere([(f64::from(i) + 0.5) / 400.0, (f64::from(j) + 0.5) / 400.0]);
                     exact += kernel.response(d) * (1.0 + a.dot(d)) * 4.0 * PI / 160_000.0;
                 }
             }
             let estimate = sum / f64::from(n);
-            assert!(
-                (estimate - exact).abs() < 0.02,
-                "{kernel:?}: {estimate} is not {exact}"
-            );
+            assert!((estimate - exact).abs() < 0.02, "{kernel:?}: {estimate} is not {exact}");
         }
     }
 }

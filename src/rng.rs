@@ -60,9 +60,7 @@ pub struct Stratified {
 impl Stratified {
     /// A fresh scramble drawn from `rng`.
     pub fn new(rng: &mut Rng) -> Self {
-        Self {
-            seed: (rng.bits() >> 32) as u32,
-        }
+        Self { seed: (rng.bits() >> 32) as u32 }
     }
 
     /// Point `index` (< 65 536) of the sequence; `rng` fills the bits below the sequence's 24.
@@ -84,9 +82,7 @@ mod tests {
     fn streams_are_repeatable_different_and_uniform() {
         let draw = |seed, stream, item| Rng::new(seed, stream, item).bits();
         assert_eq!(draw(1, 2, 3), draw(1, 2, 3));
-        let mut seen: Vec<u64> = (0..50)
-            .flat_map(|a| (0..50).map(move |b| draw(1, a, b)))
-            .collect();
+        let mut seen: Vec<u64> = (0..50).flat_map(|a| (0..50).map(move |b| draw(1, a, b))).collect();
         seen.sort_unstable();
         seen.dedup();
         assert_eq!(seen.len(), 2500, "two streams collide");

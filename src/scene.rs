@@ -74,32 +74,21 @@ impl Scene {
     ///
     /// # Errors
     /// [`SceneError`] names the first fault.
-    pub fn new(
-        mesh: Mesh,
-        materials: Vec<Material>,
-        luminaires: Vec<Luminaire>,
-    ) -> Result<Self, SceneError> {
+    pub fn new(mesh: Mesh, materials: Vec<Material>, luminaires: Vec<Luminaire>) -> Result<Self, SceneError> {
         validate(&mesh, &materials)?;
         let mut channels: Vec<Channel> = Vec::new();
         let mut channel_of = Vec::with_capacity(luminaires.len());
         for luminaire in &luminaires {
-            let channel = Channel::Luminaires {
-                group: luminaire.group.clone(),
-                kind: luminaire.kind.name.clone(),
-            };
-            let index = channels
-                .iter()
-                .position(|known| *known == channel)
-                .unwrap_or_else(|| {
-                    channels.push(channel);
-                    channels.len() - 1
-                });
+            let channel =
+                Channel::Luminaires { group: luminaire.group.clone(), kind: luminaire.kind.name.clone() };
+            let index = channels.iter().position(|known| *known == channel).unwrap_or_else(|| {
+                channels.push(channel);
+                channels.len() - 1
+            });
             channel_of.push(index);
         }
         let used = |material: usize| {
-            mesh.triangles
-                .iter()
-                .any(|t| mesh.surfaces[t.surface as usize].material == material)
+            mesh.triangles.iter().any(|t| mesh.surfaces[t.surface as usize].material == material)
         };
         for (material, entry) in materials.iter().enumerate() {
             if matches!(entry.bsdf, Bsdf::Emitter { .. }) && used(material) {
@@ -107,14 +96,7 @@ impl Scene {
             }
         }
         let tracer = Tracer::build(&mesh, &materials);
-        Ok(Self {
-            mesh,
-            materials,
-            luminaires,
-            channels,
-            channel_of,
-            tracer,
-        })
+        Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer })
     }
 
     /// The scattering model of triangle `index`.
@@ -136,11 +118,7 @@ fn validate(mesh: &Mesh, materials: &[Material]) -> Result<(), SceneError> {
             let position = mesh.positions[vertex as usize];
             if !position.is_finite() {
                 let surface = mesh.surfaces[triangle.surface as usize].name.clone();
-                return Err(SceneError::NotFinite {
-                    index: vertex as usize,
-                    surface,
-                    position,
-                });
+                return Err(SceneError::NotFinite { index: vertex as usize, surface, position });
             }
         }
     }

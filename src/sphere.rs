@@ -44,20 +44,10 @@ mod tests {
 
     #[test]
     fn frames_are_right_handed_and_orthonormal() {
-        for axis in [
-            DVec3::Z,
-            DVec3::NEG_Z,
-            DVec3::X,
-            DVec3::new(1.0, 2.0, -3.0).normalize(),
-        ] {
+        for axis in [DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::new(1.0, 2.0, -3.0).normalize()] {
             let m = frame(axis);
             assert!((m.determinant() - 1.0).abs() < 1e-12);
-            assert!(
-                (m * m.transpose() - DMat3::IDENTITY)
-                    .to_cols_array()
-                    .iter()
-                    .all(|x| x.abs() < 1e-12)
-            );
+            assert!((m * m.transpose() - DMat3::IDENTITY).to_cols_array().iter().all(|x| x.abs() < 1e-12));
             assert!((m * DVec3::Z - axis).length() < 1e-12);
         }
     }

@@ -58,8 +58,6 @@ pub struct Undefined {
 impl Undefined {
     /// An undefined value with its reason.
     pub fn because(reason: impl Into<String>) -> Self {
-        Self {
-            reason: reason.into(),
-        }
+        Self { reason: reason.into() }
     }
 }

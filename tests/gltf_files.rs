@@ -9,10 +9,8 @@ use gershun::geometry::gltf::{GltfError, Imported, import};
 
 #[allow(clippy::print_stdout)] // tells that nothing was tested
 fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("GERSHUN_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        PathBuf::from,
-    );
+    let folder = std::env::var_os("GERSHUN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
     if folder.is_dir() {
         return Some(folder);
     }
@@ -38,9 +36,7 @@ fn gltf_files(folder: &Path, found: &mut Vec<PathBuf>) {
 fn import_file(path: &Path) -> Result<Imported, GltfError> {
     let bytes = std::fs::read(path).expect("listed before");
     let folder = path.parent().expect("in a folder");
-    import(&bytes, &mut |uri| {
-        std::fs::read(folder.join(uri)).map_err(|error| format!("{uri}: {error}"))
-    })
+    import(&bytes, &mut |uri| std::fs::read(folder.join(uri)).map_err(|error| format!("{uri}: {error}")))
 }
 
 #[test]
@@ -61,12 +57,7 @@ fn real_files_are_imported() {
                     imported.biases
                 );
                 for triangle in &imported.mesh.triangles {
-                    assert!(
-                        triangle
-                            .vertices
-                            .iter()
-                            .all(|&v| (v as usize) < imported.mesh.positions.len())
-                    );
+                    assert!(triangle.vertices.iter().all(|&v| (v as usize) < imported.mesh.positions.len()));
                     assert!((triangle.surface as usize) < imported.mesh.surfaces.len());
                 }
             }
@@ -107,11 +98,7 @@ fn hostile_files_end_in_an_answer_or_an_error() {
     for (index, path) in files.iter().enumerate() {
         let start = Instant::now();
         let outcome = import_file(path);
-        assert!(
-            start.elapsed().as_secs_f64() < 5.0,
-            "{} hangs",
-            path.display()
-        );
+        assert!(start.elapsed().as_secs_f64() < 5.0, "{} hangs", path.display());
         *outcomes.entry(outcome.is_ok()).or_default() += 1;
         let name = path.strip_prefix(&data).unwrap().display();
         match &outcome {

@@ -9,13 +9,7 @@ struct Bytes(Vec<u8>);
 impl Bytes {
     fn new() -> Self {
         let corners: [[f32; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
-        Self(
-            corners
-                .iter()
-                .flatten()
-                .flat_map(|x| x.to_le_bytes())
-                .collect(),
-        )
+        Self(corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect())
     }
 
     fn with(mut self, more: &[u8]) -> Self {
@@ -47,9 +41,7 @@ fn document(
 }
 
 fn normals(imported: &Imported) -> Vec<DVec3> {
-    (0..imported.mesh.triangles.len())
-        .map(|i| imported.mesh.normal_and_area(i).0)
-        .collect()
+    (0..imported.mesh.triangles.len()).map(|i| imported.mesh.normal_and_area(i).0).collect()
 }
 
 fn area(imported: &Imported) -> f64 {
@@ -63,10 +55,7 @@ fn strips_fans_and_lists_of_every_index_type_fill_the_square_facing_the_same_way
     let fan: [u32; 4] = [0, 1, 2, 3];
     for (mode, indices) in [(4, &list[..]), (5, &strip), (6, &fan)] {
         for (kind, width) in [(5121, 1), (5123, 2), (5125, 4)] {
-            let raw: Vec<u8> = indices
-                .iter()
-                .flat_map(|i| i.to_le_bytes()[..width].to_vec())
-                .collect();
+            let raw: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()[..width].to_vec()).collect();
             let imported = document(
                 &Bytes::new().with(&raw),
                 r#"{"mesh":0,"name":"N"}"#,
@@ -75,22 +64,12 @@ fn strips_fans_and_lists_of_every_index_type_fill_the_square_facing_the_same_way
                     r#",{{"bufferView":1,"componentType":{kind},"type":"SCALAR","count":{}}}"#,
                     indices.len()
                 ),
-                &format!(
-                    r#",{{"buffer":0,"byteOffset":48,"byteLength":{}}}"#,
-                    raw.len()
-                ),
+                &format!(r#",{{"buffer":0,"byteOffset":48,"byteLength":{}}}"#, raw.len()),
             )
             .unwrap();
-            assert!(
-                (area(&imported) - 1.0).abs() < 1e-12,
-                "mode {mode}, type {kind}"
-            );
+            assert!((area(&imported) - 1.0).abs() < 1e-12, "mode {mode}, type {kind}");
             // The file's +z is the project's −y.
-            assert!(
-                normals(&imported)
-                    .iter()
-                    .all(|n| (*n - DVec3::NEG_Y).length() < 1e-12)
-            );
+            assert!(normals(&imported).iter().all(|n| (*n - DVec3::NEG_Y).length() < 1e-12));
         }
     }
 }
@@ -103,12 +82,7 @@ fn instances_are_baked_where_their_nodes_stand_and_mirrors_keep_their_front() {
         {"mesh":0,"name":"Matrix","matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}"#;
     let primitives = r#"{"attributes":{"POSITION":0},"mode":6,"material":0}"#;
     let imported = document(&Bytes::new(), nodes, primitives, "", "").unwrap();
-    let names: Vec<&str> = imported
-        .mesh
-        .surfaces
-        .iter()
-        .map(|s| s.name.as_str())
-        .collect();
+    let names: Vec<&str> = imported.mesh.surfaces.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(names, ["Moved", "Mirrored", "Matrix"]);
     assert_eq!(imported.nodes[0].surfaces, [0, 1, 2]);
     assert_eq!(imported.nodes[1].path, "Root/Moved");
@@ -127,25 +101,10 @@ fn instances_are_baked_where_their_nodes_stand_and_mirrors_keep_their_front() {
 #[test]
 fn a_node_of_two_materials_has_two_surfaces() {
     let primitives = r#"{"attributes":{"POSITION":0},"mode":6,"material":0},{"attributes":{"POSITION":0},"mode":6,"material":1},{"attributes":{"POSITION":0},"mode":6,"material":0}"#;
-    let imported = document(
-        &Bytes::new(),
-        r#"{"mesh":0,"name":"N"}"#,
-        primitives,
-        "",
-        "",
-    )
-    .unwrap();
-    let names: Vec<&str> = imported
-        .mesh
-        .surfaces
-        .iter()
-        .map(|s| s.name.as_str())
-        .collect();
+    let imported = document(&Bytes::new(), r#"{"mesh":0,"name":"N"}"#, primitives, "", "").unwrap();
+    let names: Vec<&str> = imported.mesh.surfaces.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(names, ["N.White", "N.Red"]);
-    assert_eq!(
-        imported.materials[0].reflectance, None,
-        "a default white is no datum"
-    );
+    assert_eq!(imported.materials[0].reflectance, None, "a default white is no datum");
 }
 
 #[test]
@@ -175,51 +134,19 @@ fn what_cannot_be_read_is_refused_by_name() {
     let node = r#"{"mesh":0,"name":"N"}"#;
     let plain = r#"{"attributes":{"POSITION":0},"mode":6}"#;
     let message = |nodes: &str, primitive: &str, accessors: &str, views: &str| {
-        document(&Bytes::new(), nodes, primitive, accessors, views)
-            .unwrap_err()
-            .to_string()
+        document(&Bytes::new(), nodes, primitive, accessors, views).unwrap_err().to_string()
     };
     let cases = [
         (message(r#"{"mesh":3,"name":"N"}"#, plain, "", ""), "mesh 3"),
+        (message(node, r#"{"attributes":{"POSITION":7}}"#, "", ""), "accessor 7"),
+        (message(node, r#"{"attributes":{"NORMAL":0}}"#, "", ""), "POSITION"),
+        (message(node, r#"{"attributes":{"POSITION":0},"mode":9}"#, "", ""), "mode"),
+        (message(node, r#"{"attributes":{"POSITION":0},"material":5}"#, "", ""), "material 5"),
         (
-            message(node, r#"{"attributes":{"POSITION":7}}"#, "", ""),
-            "accessor 7",
-        ),
-        (
-            message(node, r#"{"attributes":{"NORMAL":0}}"#, "", ""),
-            "POSITION",
-        ),
-        (
-            message(node, r#"{"attributes":{"POSITION":0},"mode":9}"#, "", ""),
-            "mode",
-        ),
-        (
-            message(
-                node,
-                r#"{"attributes":{"POSITION":0},"material":5}"#,
-                "",
-                "",
-            ),
-            "material 5",
-        ),
-        (
-            message(
-                r#"{"mesh":0,"name":"N","matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}"#,
-                plain,
-                "",
-                "",
-            ),
+            message(r#"{"mesh":0,"name":"N","matrix":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}"#, plain, "", ""),
             "affine",
         ),
-        (
-            message(
-                r#"{"mesh":0,"name":"N","rotation":[0,0,0,0]}"#,
-                plain,
-                "",
-                "",
-            ),
-            "not finite",
-        ),
+        (message(r#"{"mesh":0,"name":"N","rotation":[0,0,0,0]}"#, plain, "", ""), "not finite"),
         (
             message(
                 node,
@@ -273,9 +200,7 @@ fn what_cannot_be_read_is_refused_by_name() {
 
 #[test]
 fn a_chain_of_nodes_ends_before_its_paths_fill_the_memory() {
-    let chain: Vec<String> = (1..100_000)
-        .map(|i| format!(r#"{{"children":[{i}]}}"#))
-        .collect();
+    let chain: Vec<String> = (1..100_000).map(|i| format!(r#"{{"children":[{i}]}}"#)).collect();
     let nodes = format!("{},{{}}", chain.join(","));
     let primitive = r#"{"attributes":{"POSITION":0}}"#;
     let error = document(&Bytes::new(), &nodes, primitive, "", "").unwrap_err();

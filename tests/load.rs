@@ -45,10 +45,7 @@ fn load_in(folder: &Path, text: &str) -> Result<Project, Vec<Diagnostic>> {
 }
 
 fn load_text(text: &str) -> Result<Project, Vec<Diagnostic>> {
-    load_in(
-        tempfile::tempdir().expect("a temporary folder").path(),
-        text,
-    )
+    load_in(tempfile::tempdir().expect("a temporary folder").path(), text)
 }
 
 /// GOOD with one passage replaced.
@@ -100,11 +97,7 @@ fn bad(
     new: &str,
     expected: &'static [(&'static str, usize, &'static str)],
 ) -> Bad {
-    Bad {
-        fault,
-        text: good_but(old, new),
-        expected,
-    }
+    Bad { fault, text: good_but(old, new), expected }
 }
 
 #[allow(clippy::too_many_lines)] // a table
@@ -119,19 +112,13 @@ fn bad_projects() -> Vec<Bad> {
             "unknown key",
             "maintenance = 0.8",
             "maintenence = 0.8",
-            &[
-                (P, 10, "unknown key \"maintenence\""),
-                (P, 10, "did you mean \"maintenance\""),
-            ],
+            &[(P, 10, "unknown key \"maintenence\""), (P, 10, "did you mean \"maintenance\"")],
         ),
         bad(
             "unknown section",
             "[[viewpoint]]",
             "[[viewpoints]]",
-            &[
-                (P, 25, "unknown section"),
-                (P, 25, "did you mean \"viewpoint\""),
-            ],
+            &[(P, 25, "unknown section"), (P, 25, "did you mean \"viewpoint\"")],
         ),
         bad(
             "two unknown keys in one table",
@@ -145,63 +132,20 @@ fn bad_projects() -> Vec<Bad> {
             "walls = 0.5, wals = 0.5,",
             &[(P, 5, "did you mean \"walls\"")],
         ),
-        bad(
-            "wrong type",
-            "flux = 3600",
-            "flux = \"much\"",
-            &[(P, 8, "expected f64")],
-        ),
-        bad(
-            "syntax",
-            "maintenance = 0.8",
-            "maintenance = = 0.8",
-            &[(P, 10, "")],
-        ),
-        bad(
-            "missing key",
-            "eye = [4, 1, 1.2]\n",
-            "",
-            &[(P, 25, "\"eye\" is missing")],
-        ),
-        bad(
-            "missing file",
-            source,
-            "file = \"none.ldt\"",
-            &[(P, 8, "cannot read \"none.ldt\"")],
-        ),
-        bad(
-            "missing scene",
-            scene,
-            "file = \"none.glb\"",
-            &[(P, 5, "none.glb")],
-        ),
+        bad("wrong type", "flux = 3600", "flux = \"much\"", &[(P, 8, "expected f64")]),
+        bad("syntax", "maintenance = 0.8", "maintenance = = 0.8", &[(P, 10, "")]),
+        bad("missing key", "eye = [4, 1, 1.2]\n", "", &[(P, 25, "\"eye\" is missing")]),
+        bad("missing file", source, "file = \"none.ldt\"", &[(P, 8, "cannot read \"none.ldt\"")]),
+        bad("missing scene", scene, "file = \"none.glb\"", &[(P, 5, "none.glb")]),
         bad(
             "outside by ..",
             source,
             "file = \"../a.ldt\"",
-            &[
-                (P, 8, "outside the project's folder"),
-                (P, 8, "--allow-outside"),
-            ],
+            &[(P, 8, "outside the project's folder"), (P, 8, "--allow-outside")],
         ),
-        bad(
-            "outside by an absolute path",
-            source,
-            "file = \"/etc/hostname\"",
-            &[(P, 8, "--allow-outside")],
-        ),
-        bad(
-            "negative reflectance",
-            "floor = 0.2",
-            "floor = -0.2",
-            &[(P, 5, "0 … 1, found -0.2")],
-        ),
-        bad(
-            "NaN reflectance",
-            "floor = 0.2",
-            "floor = nan",
-            &[(P, 5, "found NaN")],
-        ),
+        bad("outside by an absolute path", source, "file = \"/etc/hostname\"", &[(P, 8, "--allow-outside")]),
+        bad("negative reflectance", "floor = 0.2", "floor = -0.2", &[(P, 5, "0 … 1, found -0.2")]),
+        bad("NaN reflectance", "floor = 0.2", "floor = nan", &[(P, 5, "found NaN")]),
         bad(
             "sum above 1",
             "[luminaires.A]",
@@ -232,18 +176,8 @@ fn bad_projects() -> Vec<Bad> {
             "box = { size = [8, 5, 2.8], floor = 1, walls = 1, ceiling = 1 }",
             &[(P, 5, "reflects all light")],
         ),
-        bad(
-            "surface without data",
-            ", ceiling = 0.7",
-            "",
-            &[(P, 5, "Ceiling has no photometric data")],
-        ),
-        bad(
-            "no size",
-            "size = [8, 5, 2.8]",
-            "size = [8, 0, 2.8]",
-            &[(P, 5, "greater than 0")],
-        ),
+        bad("surface without data", ", ceiling = 0.7", "", &[(P, 5, "Ceiling has no photometric data")]),
+        bad("no size", "size = [8, 5, 2.8]", "size = [8, 0, 2.8]", &[(P, 5, "greater than 0")]),
         bad(
             "zero-size area",
             desk,
@@ -268,12 +202,7 @@ fn bad_projects() -> Vec<Bad> {
             "rect = { origin = [1, 1, 0.75], u = [2, 0, 0], v = [1, 1, 0] }",
             &[(P, 18, "right angles")],
         ),
-        bad(
-            "two shapes",
-            desk,
-            "surface = \"Floor\"\npoints = \"p.csv\"",
-            &[(P, 16, "exactly one of")],
-        ),
+        bad("two shapes", desk, "surface = \"Floor\"\npoints = \"p.csv\"", &[(P, 16, "exactly one of")]),
         bad(
             "unknown surface",
             "surface = \"Wall_N\"",
@@ -292,30 +221,15 @@ fn bad_projects() -> Vec<Bad> {
             "rect = { origin = [1, 1, 0.75], u = [2, 0, 0], v = [0, 1, 0] }\nquantities = [\"E_x\"]",
             &[(P, 19, "unknown quantity")],
         ),
-        bad(
-            "unknown luminaire",
-            "luminaire = \"A\"",
-            "luminaire = \"B\"",
-            &[(P, 13, "no luminaire \"B\"")],
-        ),
-        bad(
-            "lambert without area",
-            "area = { rect = [1.2, 0.3] }\n",
-            "",
-            &[(P, 8, "needs an `area`")],
-        ),
+        bad("unknown luminaire", "luminaire = \"A\"", "luminaire = \"B\"", &[(P, 13, "no luminaire \"B\"")]),
+        bad("lambert without area", "area = { rect = [1.2, 0.3] }\n", "", &[(P, 8, "needs an `area`")]),
         bad(
             "two sources",
             "lambert = { flux = 3600 }",
             "lambert = { flux = 3600 }\npoint = { flux = 1 }",
             &[(P, 7, "exactly one of")],
         ),
-        bad(
-            "luminaire outside",
-            field,
-            "at = [9, 1, 2]",
-            &[(P, 12, "outside of every room")],
-        ),
+        bad("luminaire outside", field, "at = [9, 1, 2]", &[(P, 12, "outside of every room")]),
         bad(
             "aim and target",
             field,
@@ -334,12 +248,7 @@ fn bad_projects() -> Vec<Bad> {
             "array = { from = [1, 1, 2], step = [0, 0, 0], count = 4000000000 }",
             &[(P, 14, "an array places")],
         ),
-        bad(
-            "dim",
-            field,
-            "at = [4, 1, 2]\ndim = 1.5",
-            &[(P, 15, "dim must lie in 0 … 1")],
-        ),
+        bad("dim", field, "at = [4, 1, 2]\ndim = 1.5", &[(P, 15, "dim must lie in 0 … 1")]),
         bad(
             "unknown group",
             "[[area]]",
@@ -364,12 +273,7 @@ fn bad_projects() -> Vec<Bad> {
             "[norm]\nstandard = \"en-12464-1-2021\"\nrow = \"99.9\"\n[[area]]",
             &[(P, 18, "no row \"99.9\"")],
         ),
-        bad(
-            "row without norm",
-            "kind = \"surface\"",
-            "row = \"34.2\"",
-            &[(P, 22, "a row needs a norm")],
-        ),
+        bad("row without norm", "kind = \"surface\"", "row = \"34.2\"", &[(P, 22, "a row needs a norm")]),
         bad(
             "requirement of nothing",
             "[[area]]",
@@ -388,12 +292,7 @@ fn bad_projects() -> Vec<Bad> {
             "eye = [4, 1, 3.2]",
             &[(P, 26, "outside of every room")],
         ),
-        bad(
-            "endless sweep",
-            "step = 15",
-            "step = 0",
-            &[(P, 28, "a sweep runs upwards")],
-        ),
+        bad("endless sweep", "step = 15", "step = 0", &[(P, 28, "a sweep runs upwards")]),
         bad(
             "bow-tie",
             scene,
@@ -424,17 +323,8 @@ fn bad_projects() -> Vec<Bad> {
             "[accuracy]\ngoal = { relative = 2 }\n[[area]]",
             &[(P, 17, "between 0 and 1")],
         ),
-        bad(
-            "time",
-            "[[area]]",
-            "[accuracy]\ngoal = { time = \"soon\" }\n[[area]]",
-            &[(P, 17, "30s")],
-        ),
-        Bad {
-            fault: "empty project",
-            text: String::new(),
-            expected: &[(P, 1, "no scene and no room")],
-        },
+        bad("time", "[[area]]", "[accuracy]\ngoal = { time = \"soon\" }\n[[area]]", &[(P, 17, "30s")]),
+        Bad { fault: "empty project", text: String::new(), expected: &[(P, 1, "no scene and no room")] },
         Bad {
             fault: "several mistakes at once",
             text: good_but("floor = 0.2", "floor = 2")
@@ -463,18 +353,11 @@ fn every_mistake_is_reported_in_its_place() {
         };
         for (file, line, fragment) in case.expected {
             let hit = errors.iter().any(|error| {
-                error.file.ends_with(file)
-                    && error.line == *line
-                    && error.to_string().contains(fragment)
+                error.file.ends_with(file) && error.line == *line && error.to_string().contains(fragment)
             });
             if !hit {
-                writeln!(
-                    failures,
-                    "== {}: no {file}:{line} \"{fragment}\" in\n{}",
-                    case.fault,
-                    all(&errors)
-                )
-                .unwrap();
+                writeln!(failures, "== {}: no {file}:{line} \"{fragment}\" in\n{}", case.fault, all(&errors))
+                    .unwrap();
             }
         }
     }
@@ -484,8 +367,7 @@ fn every_mistake_is_reported_in_its_place() {
 #[test]
 fn broken_files_beside_the_project_are_named() {
     let folder = tempfile::tempdir().unwrap();
-    let falling =
-        "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 3 1 1 2 0.5 0.5 0\n1 1 100\n0 60 30\n0\n100 50 0\n";
+    let falling = "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 3 1 1 2 0.5 0.5 0\n1 1 100\n0 60 30\n0\n100 50 0\n";
     let node = |extra: &str| {
         format!(r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],{extra}}}"#)
     };
@@ -494,8 +376,7 @@ fn broken_files_beside_the_project_are_named() {
             r#""nodes":[{{"mesh":0,"name":"N"}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":{count}}}],"bufferViews":[{{"buffer":0,"byteLength":36}}],"buffers":[{{"byteLength":36,"uri":"{buffer}"}}]"#
         ))
     };
-    let floats =
-        |values: [f32; 9]| -> Vec<u8> { values.into_iter().flat_map(f32::to_le_bytes).collect() };
+    let floats = |values: [f32; 9]| -> Vec<u8> { values.into_iter().flat_map(f32::to_le_bytes).collect() };
     let good = floats([0., 0., 0., 1., 0., 0., 0., 1., 0.]);
     let flat = floats([0., 0., 0., 1., 0., 0., 2., 0., 0.]);
     let wild = floats([0., 0., 0., f32::INFINITY, 0., 0., 0., 1., 0.]);
@@ -559,9 +440,7 @@ fn broken_files_beside_the_project_are_named() {
     ];
     for (name, bytes, fragment) in cases {
         fs::write(folder.path().join(name), &bytes).unwrap();
-        let is_scene = Path::new(name)
-            .extension()
-            .is_some_and(|e| e == "gltf" || e == "glb");
+        let is_scene = Path::new(name).extension().is_some_and(|e| e == "gltf" || e == "glb");
         let text = if is_scene {
             format!("[scene]\nfile = \"{name}\"\n")
         } else {
@@ -581,26 +460,16 @@ fn broken_files_beside_the_project_are_named() {
 #[test]
 fn a_material_in_the_project_completes_a_file_and_wins_over_it() {
     let folder = tempfile::tempdir().unwrap();
-    let floats: Vec<u8> = [0f32, 0., 0., 4., 0., 0., 0., 3., 1.]
-        .into_iter()
-        .flat_map(f32::to_le_bytes)
-        .collect();
+    let floats: Vec<u8> =
+        [0f32, 0., 0., 4., 0., 0., 0., 3., 1.].into_iter().flat_map(f32::to_le_bytes).collect();
     fs::write(folder.path().join("t.bin"), floats).unwrap();
     let file = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"name":"N"}],"materials":[{"name":"Paint","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1]}}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"t.bin"}]}"#;
     fs::write(folder.path().join("a.gltf"), file).unwrap();
-    for (materials, expected) in [
-        ("", 0.5),
-        ("[materials]\nPaint = { reflectance = 0.25 }", 0.25),
-    ] {
+    for (materials, expected) in [("", 0.5), ("[materials]\nPaint = { reflectance = 0.25 }", 0.25)] {
         let text = format!("[scene]\nfile = \"a.gltf\"\n{materials}\n");
         let project = load_in(folder.path(), &text).unwrap_or_else(|e| panic!("{}", all(&e)));
         let scene = &project.worlds[0].scene;
-        assert_eq!(
-            scene.materials[0].bsdf,
-            Bsdf::Lambert {
-                reflectance: expected
-            }
-        );
+        assert_eq!(scene.materials[0].bsdf, Bsdf::Lambert { reflectance: expected });
         // Y up became Z up: the file's third coordinate is −y of the project.
         assert!((scene.mesh.positions[2] - DVec3::new(0.0, -1.0, 3.0)).length() < 1e-6);
         assert_eq!(project.inputs.len(), 3);
@@ -613,27 +482,12 @@ fn a_symbolic_link_does_not_lead_outside() {
     let outer = tempfile::tempdir().unwrap();
     fs::write(outer.path().join("secret.ldt"), "x").unwrap();
     let inner = tempfile::tempdir().unwrap();
-    std::os::unix::fs::symlink(outer.path().join("secret.ldt"), inner.path().join("a.ldt"))
-        .unwrap();
+    std::os::unix::fs::symlink(outer.path().join("secret.ldt"), inner.path().join("a.ldt")).unwrap();
     let text = good_but("lambert = { flux = 3600 }", "file = \"a.ldt\"");
     let errors = load_in(inner.path(), &text).unwrap_err();
-    assert!(
-        errors[0].to_string().contains("--allow-outside"),
-        "{}",
-        all(&errors)
-    );
-    let allowed = load(
-        inner.path(),
-        &LoadOptions {
-            allow_outside: true,
-        },
-    )
-    .unwrap_err();
-    assert!(
-        !all(&allowed).contains("--allow-outside"),
-        "{}",
-        all(&allowed)
-    );
+    assert!(errors[0].to_string().contains("--allow-outside"), "{}", all(&errors));
+    let allowed = load(inner.path(), &LoadOptions { allow_outside: true }).unwrap_err();
+    assert!(!all(&allowed).contains("--allow-outside"), "{}", all(&allowed));
 }
 
 #[test]
@@ -644,11 +498,7 @@ fn footprint_rooms_openings_furniture_lists_and_maintenance_come_together() {
         "luminaire,x,y,z,dim,group\nA,1,1,2.5,0.5,north\nA,11,1,2.5,,\n",
     )
     .unwrap();
-    fs::write(
-        folder.path().join("views.csv"),
-        "name,x,y,z,azimuth\nSeat,1,1,1.2,90\n",
-    )
-    .unwrap();
+    fs::write(folder.path().join("views.csv"), "name,x,y,z,azimuth\nSeat,1,1,1.2,90\n").unwrap();
     let text = r#"
 [project]
 date = 2026-01-31
@@ -691,37 +541,21 @@ size = [10, 10]
     let project = load_in(folder.path(), text).unwrap_or_else(|e| panic!("{}", all(&e)));
     assert_eq!(project.worlds.len(), 2);
     assert_eq!(project.info.date, "2026-01-31");
-    let [first, second] = &project.worlds[..] else {
-        panic!()
-    };
+    let [first, second] = &project.worlds[..] else { panic!() };
     assert_eq!(first.scene.luminaires[0].kind.name, "A");
     assert!((first.scene.luminaires[0].kind.maintenance.factor() - 0.9).abs() < 1e-12);
     assert_eq!(second.scene.luminaires[0].kind.name, "A (Box)");
     assert!((first.rooms[0].rsmf - 0.95).abs() < 1e-12);
-    let furniture = first
-        .scene
-        .mesh
-        .surfaces
-        .iter()
-        .filter(|s| s.furniture)
-        .count();
+    let furniture = first.scene.mesh.surfaces.iter().filter(|s| s.furniture).count();
     assert_eq!(furniture, 1);
     assert_eq!(first.scene.channels.len(), 2);
     assert_eq!(second.areas[0].name, "West");
     assert!(project.biases.iter().any(|bias| bias.contains("cameras")));
     assert_eq!(project.inputs.len(), 3);
 
-    fs::write(
-        folder.path().join("places.csv"),
-        "luminaire,x,y,z\nA,1,1,2.5\nA,1,one,2.5\n",
-    )
-    .unwrap();
+    fs::write(folder.path().join("places.csv"), "luminaire,x,y,z\nA,1,1,2.5\nA,1,one,2.5\n").unwrap();
     let errors = load_in(folder.path(), text).unwrap_err();
-    assert!(
-        errors.iter().any(|e| e.file == "places.csv" && e.line == 3),
-        "{}",
-        all(&errors)
-    );
+    assert!(errors.iter().any(|e| e.file == "places.csv" && e.line == 3), "{}", all(&errors));
 }
 
 #[test]
@@ -743,10 +577,8 @@ fn flipped_bytes_never_panic() {
 
 #[test]
 fn the_shell_of_a_cad_room_is_told_from_its_furniture() {
-    let data = std::env::var_os("GERSHUN_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-        Into::into,
-    );
+    let data = std::env::var_os("GERSHUN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), Into::into);
     let Ok(bytes) = fs::read(data.join("geometry/gltf/bevy/CornellBox.glb")) else {
         println!("skipped: no data folder");
         return;

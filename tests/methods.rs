@@ -29,7 +29,11 @@ fn demand() -> Demand {
             receivers.push(Receiver { point: p + DVec3::Z * 0.4, lift: DVec3::ZERO, kernels });
         }
         let wall = DVec3::new(0.5 + 1.2 * f64::from(i), 0.0, 1.3);
-        receivers.push(Receiver { point: wall, lift: DVec3::Y, kernels: vec![Kernel::Planar { normal: DVec3::Y }] });
+        receivers.push(Receiver {
+            point: wall,
+            lift: DVec3::Y,
+            kernels: vec![Kernel::Planar { normal: DVec3::Y }],
+        });
         let ceiling = DVec3::new(0.5 + 1.2 * f64::from(i), 0.7, 2.8);
         receivers.push(Receiver { point: ceiling, lift: -up, kernels: vec![Kernel::Planar { normal: -up }] });
         let floor = DVec3::new(0.5 + 1.2 * f64::from(i), 0.03, 0.0);
@@ -40,10 +44,10 @@ fn demand() -> Demand {
         .map(|k| {
             let (s, c) = (f64::from(k) * 0.53).sin_cos();
             let target = match k % 4 {
-                0 => DVec3::new(0.01, 1.0 + 0.02 * f64::from(k), 1.2),  // the mirror
-                1 => DVec3::new(5.9, 0.3 + 0.02 * f64::from(k), 1.0),   // through the pane
-                2 => DVec3::new(3.0 + 3.0 * c, 2.0 + 2.0 * s, 2.8),     // ceiling and luminaires
-                _ => DVec3::new(2.0 + 0.02 * f64::from(k), 2.2, 1.0),   // the opal
+                0 => DVec3::new(0.01, 1.0 + 0.02 * f64::from(k), 1.2), // the mirror
+                1 => DVec3::new(5.9, 0.3 + 0.02 * f64::from(k), 1.0),  // through the pane
+                2 => DVec3::new(3.0 + 3.0 * c, 2.0 + 2.0 * s, 2.8),    // ceiling and luminaires
+                _ => DVec3::new(2.0 + 0.02 * f64::from(k), 2.2, 1.0),  // the opal
             };
             Ray { point: eye, direction: (target - eye).normalize() }
         })
@@ -54,12 +58,22 @@ fn demand() -> Demand {
 /// t values of all rows, and the p-value of the Kolmogorov–Smirnov test of their t-null.
 fn differences(links: &Scene, path: &Scene, seed: u64) -> (Vec<f64>, f64) {
     let (blocks, demand) = (64, demand());
-    let a = sheets(links, &demand, Method::Links, Effort { gather: 16, walks: 8, ..Effort::default() }, seed, blocks);
+    let a = sheets(
+        links,
+        &demand,
+        Method::Links,
+        Effort { gather: 16, walks: 8, ..Effort::default() },
+        seed,
+        blocks,
+    );
     let b = sheets(path, &demand, Method::Path, Effort { paths: 128, ..Effort::default() }, seed, blocks);
     let channels = links.channels.len();
     let mut t: Vec<f64> = Vec::new();
     for index in 0..demand.rows() {
-        let (x, y) = (Estimate::from_blocks(&row(&a, index, channels)), Estimate::from_blocks(&row(&b, index, channels)));
+        let (x, y) = (
+            Estimate::from_blocks(&row(&a, index, channels)),
+            Estimate::from_blocks(&row(&b, index, channels)),
+        );
         let se = x.se.hypot(y.se);
         if se > 1e-9 * x.value.abs() {
             t.push((x.value - y.value) / se);

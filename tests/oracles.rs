@@ -11,7 +11,14 @@ use gershun::solve::{Effort, Method};
 use glam::DVec3;
 
 /// Largest |error| in combined standard errors, RMS and largest relative error, largest relative se.
-fn compare(scene: &Scene, demand: &Demand, truth: &[(f64, f64)], method: Method, effort: Effort, blocks: u64) -> [f64; 4] {
+fn compare(
+    scene: &Scene,
+    demand: &Demand,
+    truth: &[(f64, f64)],
+    method: Method,
+    effort: Effort,
+    blocks: u64,
+) -> [f64; 4] {
     let sheets = sheets(scene, demand, method, effort, 1, blocks);
     let (mut z, mut square, mut worst, mut se) = (0f64, 0.0, 0f64, 0f64);
     for (index, &(expected, error)) in truth.iter().enumerate() {
@@ -52,12 +59,34 @@ fn box_rooms_match_the_radiosity_reference() {
         (
             box_room(a, [0.2, 0.5, 0.7], DVec3::new(2.0, 1.5, 2.0), 1000.0),
             a,
-            [40.85550169, 24.18436702, 27.95514660, 16.53286018, 21.27121716, 32.35348398, 41.25895606, 43.55374461, 48.42505842, 13.18044996],
+            [
+                40.85550169,
+                24.18436702,
+                27.95514660,
+                16.53286018,
+                21.27121716,
+                32.35348398,
+                41.25895606,
+                43.55374461,
+                48.42505842,
+                13.18044996,
+            ],
         ),
         (
             box_room(DVec3::splat(4.0), [0.5; 3], DVec3::splat(2.0), 10_000.0),
             DVec3::splat(4.0),
-            [310.98241485, 161.07376390, 210.23436054, 112.94994723, 161.07376390, 270.57459065, 270.57459065, 261.26235010, 299.59517076, 105.31801484],
+            [
+                310.98241485,
+                161.07376390,
+                210.23436054,
+                112.94994723,
+                161.07376390,
+                270.57459065,
+                270.57459065,
+                261.26235010,
+                299.59517076,
+                105.31801484,
+            ],
         ),
     ];
     for (scene, size, totals) in rooms {
@@ -66,7 +95,13 @@ fn box_rooms_match_the_radiosity_reference() {
         let effort = Effort { gather: 64, walks: 32, ..Effort::default() };
         let before = common::cpu_seconds();
         let [z, rms, worst, se] = compare(&scene, &demand, &truth, Method::Links, effort, 256);
-        println!("links: z {z:.2}, rms {:.3} %, worst {:.3} %, se {:.3} %, {:.2} CPU-s", 100.0 * rms, 100.0 * worst, 100.0 * se, common::cpu_seconds() - before);
+        println!(
+            "links: z {z:.2}, rms {:.3} %, worst {:.3} %, se {:.3} %, {:.2} CPU-s",
+            100.0 * rms,
+            100.0 * worst,
+            100.0 * se,
+            common::cpu_seconds() - before
+        );
         assert!(5.0 * se <= 0.015, "cannot resolve 1.5 %: se {se}");
         assert!(z <= 5.0, "{z} standard errors");
     }
@@ -92,7 +127,8 @@ fn scene_a_matches_the_peers() {
             lamps.push(panel(3600.0, 0.6, c));
         }
     }
-    let materials = vec![lambert("floor", 0.2), lambert("wall", 0.5), lambert("ceiling", 0.7), lambert("black", 0.0)];
+    let materials =
+        vec![lambert("floor", 0.2), lambert("wall", 0.5), lambert("ceiling", 0.7), lambert("black", 0.0)];
     let scene = Scene::new(mesh, materials, lamps).unwrap();
     let receivers = rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect();
     let demand = Demand { receivers, rays: vec![], flux: false };
@@ -101,18 +137,30 @@ fn scene_a_matches_the_peers() {
         let effort = Effort { gather, walks, ..Effort::default() };
         let before = common::cpu_seconds();
         let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Links, effort, blocks);
-        println!("{gather} {walks} {blocks}: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s", 100.0 * rms, 100.0 * worst, common::cpu_seconds() - before);
+        println!(
+            "{gather} {walks} {blocks}: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
+            100.0 * rms,
+            100.0 * worst,
+            common::cpu_seconds() - before
+        );
     }
     let before = common::cpu_seconds();
-    let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Path, Effort { paths: 256, ..Effort::default() }, 64);
-    println!("path: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s", 100.0 * rms, 100.0 * worst, common::cpu_seconds() - before);
+    let [z, rms, worst, _] =
+        compare(&scene, &demand, &truth, Method::Path, Effort { paths: 256, ..Effort::default() }, 64);
+    println!(
+        "path: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
+        100.0 * rms,
+        100.0 * worst,
+        common::cpu_seconds() - before
+    );
 }
 
 #[test]
 fn debug_scene_a() {
     let Some(data) = data() else { return };
     let text = std::fs::read_to_string(data.join("peers/A_wp_reference.csv")).unwrap();
-    let rows: Vec<Vec<f64>> = text.lines().skip(1).map(|line| line.split(',').map(|f| f.parse().unwrap()).collect()).collect();
+    let rows: Vec<Vec<f64>> =
+        text.lines().skip(1).map(|line| line.split(',').map(|f| f.parse().unwrap()).collect()).collect();
     let mut mesh = room(DVec3::new(8.0, 5.0, 2.8));
     let mut lamps = Vec::new();
     let plate = mesh.add_surface("plates", 3, true);
@@ -124,9 +172,14 @@ fn debug_scene_a() {
             lamps.push(panel(3600.0, 0.6, c));
         }
     }
-    let materials = vec![lambert("floor", 0.2), lambert("wall", 0.5), lambert("ceiling", 0.7), lambert("black", 0.0)];
+    let materials =
+        vec![lambert("floor", 0.2), lambert("wall", 0.5), lambert("ceiling", 0.7), lambert("black", 0.0)];
     let scene = Scene::new(mesh, materials, lamps).unwrap();
-    let demand = Demand { receivers: rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect(), rays: vec![], flux: false };
+    let demand = Demand {
+        receivers: rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect(),
+        rays: vec![],
+        flux: false,
+    };
     for method in [Method::Links, Method::Path] {
         let s = sheets(&scene, &demand, method, Effort::default(), 1, 64);
         for i in [0, 1, 5, 20, 77] {

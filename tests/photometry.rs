@@ -42,20 +42,15 @@ fn expected(data: &Path) -> Vec<Expected> {
     let read = |row: csv::Result<csv::StringRecord>| {
         let row = row.expect("well-formed row");
         let number = |column: usize| row[column].parse::<f64>().expect("a number");
-        let (listed, here) = FOLDERS
-            .iter()
-            .find(|(listed, _)| row[0].starts_with(listed))
-            .expect("a known folder");
+        let (listed, here) =
+            FOLDERS.iter().find(|(listed, _)| row[0].starts_with(listed)).expect("a known folder");
         Expected {
             name: row[0].to_owned(),
             path: data.join(row[0].replacen(listed, here, 1)),
             flux_lm: number(12),
             down_percent: number(14),
             peak_cd: number(15),
-            zones_lm: row[16]
-                .split(';')
-                .map(|zone| zone.parse().expect("a number"))
-                .collect(),
+            zones_lm: row[16].split(';').map(|zone| zone.parse().expect("a number")).collect(),
             flags: row[17].trim().to_owned(),
         }
     };
@@ -84,35 +79,17 @@ fn flux_peak_and_zones_of_every_file() {
         let flux = distribution.flux().0;
         worst_flux = worst_flux.max(off(flux, file.flux_lm));
         worst_peak = worst_peak.max(off(distribution.max_intensity().0, file.peak_cd));
-        assert!(
-            off(flux, file.flux_lm) < 1e-3,
-            "{}: {flux} lm, expected {}",
-            file.name,
-            file.flux_lm
-        );
+        assert!(off(flux, file.flux_lm) < 1e-3, "{}: {flux} lm, expected {}", file.name, file.flux_lm);
         let peak = distribution.max_intensity().0;
-        assert!(
-            off(peak, file.peak_cd) < 1e-3,
-            "{}: {peak} cd, expected {}",
-            file.name,
-            file.peak_cd
-        );
+        assert!(off(peak, file.peak_cd) < 1e-3, "{}: {peak} cd, expected {}", file.name, file.peak_cd);
         for (k, zone) in file.zones_lm.iter().enumerate() {
             let from_deg = 10.0 * k as f64;
             let miss = (distribution.zonal_flux(from_deg, from_deg + 10.0).0 - zone).abs();
             worst_zone = worst_zone.max(miss / flux);
-            assert!(
-                miss < 1e-4 * flux + 0.006,
-                "{}: zone {from_deg}° misses by {miss} lm",
-                file.name
-            );
+            assert!(miss < 1e-4 * flux + 0.006, "{}: zone {from_deg}° misses by {miss} lm", file.name);
         }
         let down = 100.0 * distribution.zonal_flux(0.0, 90.0).0 / flux;
-        assert!(
-            (down - file.down_percent).abs() < 0.01,
-            "{}: {down} % down",
-            file.name
-        );
+        assert!((down - file.down_percent).abs() < 0.01, "{}: {down} % down", file.name);
         let codes: Vec<&str> = lamp.findings.iter().map(|finding| finding.code).collect();
         println!("{}: {codes:?}", file.name);
         if !file.flags.is_empty() {
@@ -143,9 +120,7 @@ fn luminance_agrees_with_relux() {
     for k in 1..=5 {
         let bytes = fs::read(folder.join(format!("lum_sample_{k:02}.ldt"))).expect("a sample");
         let lamp = parse(&bytes, "sample").unwrap_or_else(|error| panic!("{error}"));
-        let table = reference["samples"][format!("sample_{k:02}")]["table"]
-            .as_object()
-            .expect("a table");
+        let table = reference["samples"][format!("sample_{k:02}")]["table"].as_object().expect("a table");
         for (gamma, row) in table {
             let gamma = gamma.parse::<f64>().expect("γ").to_radians();
             for (j, printed) in row.as_array().expect("a row").iter().enumerate() {
@@ -156,8 +131,8 @@ fn luminance_agrees_with_relux() {
                     let azimuth = (15.0 * j as f64 + turn).to_radians();
                     let (sin, cos) = gamma.sin_cos();
                     let toward = DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), -cos);
-                    let luminance = lamp.distribution.intensity_along(toward)
-                        / lamp.opening.projected_area_m2(toward);
+                    let luminance =
+                        lamp.distribution.intensity_along(toward) / lamp.opening.projected_area_m2(toward);
                     if printed > 100.0 {
                         *worst = worst.max(off(luminance, printed));
                     }
@@ -165,11 +140,7 @@ fn luminance_agrees_with_relux() {
             }
         }
     }
-    println!(
-        "luminance within {:.2} % of Relux; turned by 90°: {:.0} %",
-        100.0 * worst[0],
-        100.0 * worst[1]
-    );
+    println!("luminance within {:.2} % of Relux; turned by 90°: {:.0} %", 100.0 * worst[0], 100.0 * worst[1]);
     assert!(worst[0] < 0.03 && worst[1] > 0.10, "{worst:?}");
 }
 
@@ -189,37 +160,15 @@ fn openings_of_the_code_samples() {
     };
     let exact = [
         ("point_opening.ies", Opening::Point),
-        (
-            "round_opening.ies",
-            Opening::Disc {
-                diameter_m: 0.12,
-                height_m: 0.0,
-            },
-        ),
-        (
-            "round_opening_with_height.ies",
-            Opening::Disc {
-                diameter_m: 0.12,
-                height_m: 0.34,
-            },
-        ),
+        ("round_opening.ies", Opening::Disc { diameter_m: 0.12, height_m: 0.0 }),
+        ("round_opening_with_height.ies", Opening::Disc { diameter_m: 0.12, height_m: 0.34 }),
         (
             "rectangular_opening.ies",
-            Opening::Rect {
-                length_m: 0.34,
-                width_m: 0.12,
-                side_x_m: 0.0,
-                side_y_m: 0.0,
-            },
+            Opening::Rect { length_m: 0.34, width_m: 0.12, side_x_m: 0.0, side_y_m: 0.0 },
         ),
         (
             "rectangular_opening_with_height.ies",
-            Opening::Rect {
-                length_m: 0.34,
-                width_m: 0.12,
-                side_x_m: 0.56,
-                side_y_m: 0.56,
-            },
+            Opening::Rect { length_m: 0.34, width_m: 0.12, side_x_m: 0.56, side_y_m: 0.56 },
         ),
     ];
     for (name, opening) in exact {
@@ -227,16 +176,9 @@ fn openings_of_the_code_samples() {
         assert_eq!(lamp.opening, opening, "{name}");
         assert!(!approximated(&lamp), "{name}");
     }
-    for shape in [
-        "ellipse_opening",
-        "ellipsoid_opening",
-        "horizontal_cylinder_opening",
-    ] {
+    for shape in ["ellipse_opening", "ellipsoid_opening", "horizontal_cylinder_opening"] {
         for along in ["length", "width"] {
-            assert!(
-                approximated(&read(&format!("{shape}_along_{along}.ies"))),
-                "{shape} along {along}"
-            );
+            assert!(approximated(&read(&format!("{shape}_along_{along}.ies"))), "{shape} along {along}");
         }
     }
     assert!(approximated(&read("sphere_opening.ies")));

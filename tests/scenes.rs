@@ -1,8 +1,5 @@
 //! The example scenes are what their generator makes, and fit together.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test that cannot read its files fails"
-)]
+#![expect(clippy::unwrap_used, reason = "a test that cannot read its files fails")]
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -28,11 +25,7 @@ fn glb_json() -> Value {
     assert_eq!(&bytes[16..20], b"JSON");
     let binary = 20 + word(12);
     assert_eq!(&bytes[binary + 4..binary + 8], b"BIN\0");
-    assert_eq!(
-        binary + 8 + word(binary),
-        bytes.len(),
-        "two chunks fill the file"
-    );
+    assert_eq!(binary + 8 + word(binary), bytes.len(), "two chunks fill the file");
     serde_json::from_slice(&bytes[20..binary]).unwrap()
 }
 
@@ -76,18 +69,8 @@ fn office_has_about_five_thousand_triangles_with_instances() {
     let json = glb_json();
     let triangles_of = |mesh: &Value| -> u64 {
         let primitives = json["meshes"][mesh.as_u64().unwrap() as usize]["primitives"].as_array();
-        let indices = primitives
-            .unwrap()
-            .iter()
-            .map(|p| p["indices"].as_u64().unwrap());
-        indices
-            .map(|accessor| {
-                json["accessors"][accessor as usize]["count"]
-                    .as_u64()
-                    .unwrap()
-                    / 3
-            })
-            .sum()
+        let indices = primitives.unwrap().iter().map(|p| p["indices"].as_u64().unwrap());
+        indices.map(|accessor| json["accessors"][accessor as usize]["count"].as_u64().unwrap() / 3).sum()
     };
     let nodes = json["nodes"].as_array().unwrap();
     let meshes: Vec<&Value> = nodes.iter().filter_map(|node| node.get("mesh")).collect();
@@ -95,11 +78,7 @@ fn office_has_about_five_thousand_triangles_with_instances() {
     assert!((4500..=5500).contains(&expanded), "{expanded}");
     assert_eq!(expanded as usize, make_office::make().0);
     let distinct = json["meshes"].as_array().unwrap().len();
-    assert!(
-        meshes.len() >= distinct + 25,
-        "{} nodes share {distinct} meshes",
-        meshes.len()
-    );
+    assert!(meshes.len() >= distinct + 25, "{} nodes share {distinct} meshes", meshes.len());
 }
 
 /// Catches: Z-up coordinates written into the Y-up file, or y mirrored.
@@ -110,9 +89,7 @@ fn file_is_y_up_and_right_handed() {
         let nodes = json["nodes"].as_array().unwrap();
         let node = nodes.iter().find(|node| node["name"] == name).unwrap();
         let mesh = &json["meshes"][node["mesh"].as_u64().unwrap() as usize];
-        let position = mesh["primitives"][0]["attributes"]["POSITION"]
-            .as_u64()
-            .unwrap();
+        let position = mesh["primitives"][0]["attributes"]["POSITION"].as_u64().unwrap();
         let accessor = &json["accessors"][position as usize];
         ["min", "max"].map(|key| {
             let corner = accessor[key].as_array().unwrap().iter();
@@ -131,22 +108,12 @@ fn file_is_y_up_and_right_handed() {
 fn project_lists_the_materials_of_the_model() {
     let json = glb_json();
     let materials = json["materials"].as_array().unwrap();
-    let used: BTreeSet<&str> = materials
-        .iter()
-        .map(|m| m["name"].as_str().unwrap())
-        .collect();
+    let used: BTreeSet<&str> = materials.iter().map(|m| m["name"].as_str().unwrap()).collect();
     let project = read_project("office");
-    let listed: BTreeSet<&str> = project["materials"]
-        .as_table()
-        .unwrap()
-        .keys()
-        .map(String::as_str)
-        .collect();
+    let listed: BTreeSet<&str> =
+        project["materials"].as_table().unwrap().keys().map(String::as_str).collect();
     assert_eq!(used, listed);
-    assert!(
-        materials.iter().all(|m| m.as_object().unwrap().len() == 1),
-        "names only"
-    );
+    assert!(materials.iter().all(|m| m.as_object().unwrap().len() == 1), "names only");
 }
 
 /// Catches: an area, viewpoint or placement that names what does not exist.
@@ -158,20 +125,12 @@ fn names_in_the_office_project_exist() {
     let project = read_project("office");
     let list = |key: &str| project[key].as_array().unwrap().iter();
     let text = |entry: &toml::Value, key: &str| Some(entry.get(key)?.as_str()?.to_owned());
-    let areas: Vec<String> = list("area")
-        .map(|area| text(area, "name").unwrap())
-        .collect();
+    let areas: Vec<String> = list("area").map(|area| text(area, "name").unwrap()).collect();
     let distinct: BTreeSet<&String> = areas.iter().collect();
     assert_eq!(areas.len(), distinct.len(), "area names are unique");
     for area in list("area") {
-        assert!(
-            text(area, "surface").is_none_or(|name| node(&name)),
-            "{area}"
-        );
-        assert!(
-            text(area, "of").is_none_or(|name| areas.contains(&name)),
-            "{area}"
-        );
+        assert!(text(area, "surface").is_none_or(|name| node(&name)), "{area}");
+        assert!(text(area, "of").is_none_or(|name| areas.contains(&name)), "{area}");
     }
     for room in list("room") {
         assert!(text(room, "node").is_none_or(|name| node(&name)), "{room}");
@@ -196,48 +155,29 @@ fn names_in_the_office_project_exist() {
 fn faulty_models_are_rejected() {
     let says = |model, words: &str| {
         let faults = check::faults(&model);
-        assert!(
-            faults.iter().any(|fault| fault.contains(words)),
-            "{faults:?}"
-        );
+        assert!(faults.iter().any(|fault| fault.contains(words)), "{faults:?}");
     };
     assert_eq!(check::faults(&room::office()), Vec::<String>::new());
 
     let mut open = room::office();
-    let desk = open
-        .meshes
-        .iter_mut()
-        .find(|mesh| mesh.name == "Desk")
-        .unwrap();
+    let desk = open.meshes.iter_mut().find(|mesh| mesh.name == "Desk").unwrap();
     desk.parts[0].shape.triangles.pop();
     says(open, "not shared");
 
     let mut inside_out = room::office();
-    let desk = inside_out
-        .meshes
-        .iter_mut()
-        .find(|mesh| mesh.name == "Desk")
-        .unwrap();
+    let desk = inside_out.meshes.iter_mut().find(|mesh| mesh.name == "Desk").unwrap();
     for triangle in &mut desk.parts[0].shape.triangles {
         triangle.reverse();
     }
     says(inside_out, "inwards");
 
     let mut outside = room::office();
-    let plant = outside
-        .nodes
-        .iter_mut()
-        .find(|node| node.name == "Plant")
-        .unwrap();
+    let plant = outside.nodes.iter_mut().find(|node| node.name == "Plant").unwrap();
     plant.at.x += 0.3;
     says(outside, "pokes out");
 
     let mut standing = room::office();
-    let bin = standing
-        .nodes
-        .iter_mut()
-        .find(|node| node.name == "Bin")
-        .unwrap();
+    let bin = standing.nodes.iter_mut().find(|node| node.name == "Bin").unwrap();
     bin.at.z -= 0.001;
     says(standing, "share a plane");
 

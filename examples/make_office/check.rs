@@ -54,18 +54,13 @@ fn not_solid(shape: &Shape) -> Option<String> {
             *edges.entry(edge).or_default() += 1;
         }
     }
-    let closed = edges
-        .iter()
-        .all(|(&(a, b), &count)| count == 1 && edges.get(&(b, a)) == Some(&1));
+    let closed = edges.iter().all(|(&(a, b), &count)| count == 1 && edges.get(&(b, a)) == Some(&1));
     if !closed {
         return Some("an edge is not shared by two opposite triangles".into());
     }
     let corner = |v: u32| shape.vertices[v as usize];
-    let volume_m3: f64 = shape
-        .triangles
-        .iter()
-        .map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))) / 6.0)
-        .sum();
+    let volume_m3: f64 =
+        shape.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c))) / 6.0).sum();
     let thin = shape.triangles.iter().any(|&[a, b, c]| {
         let cross = (corner(b) - corner(a)).cross(corner(c) - corner(a));
         0.5 * cross.length() < 1e-8

@@ -20,26 +20,13 @@ fn part(material: &'static str, shape: Shape) -> Part {
 /// 1.6 × 0.8 m on four legs, with a modesty panel at the far side.
 pub fn desk() -> Vec<Part> {
     let mut parts = vec![
-        part(
-            "Desk",
-            Shape::cuboid([-0.8, 0.8], [-0.4, 0.4], [DESK_M - 0.025, DESK_M]),
-        ),
-        part(
-            "Wood",
-            Shape::cuboid([-0.735, 0.735], [0.345, 0.357], [0.3, 0.6]),
-        ),
-        part(
-            "Metal",
-            Shape::cuboid([-0.73, 0.73], [-0.01, 0.03], [0.66, 0.718]),
-        ),
+        part("Desk", Shape::cuboid([-0.8, 0.8], [-0.4, 0.4], [DESK_M - 0.025, DESK_M])),
+        part("Wood", Shape::cuboid([-0.735, 0.735], [0.345, 0.357], [0.3, 0.6])),
+        part("Metal", Shape::cuboid([-0.73, 0.73], [-0.01, 0.03], [0.66, 0.718])),
     ];
     for x in [-0.75, 0.75] {
         for y in [-0.35, 0.35] {
-            let leg = Shape::cuboid(
-                [x - 0.025, x + 0.025],
-                [y - 0.025, y + 0.025],
-                [GAP_M, 0.72],
-            );
+            let leg = Shape::cuboid([x - 0.025, x + 0.025], [y - 0.025, y + 0.025], [GAP_M, 0.72]);
             parts.push(part("Metal", leg));
         }
     }
@@ -51,22 +38,10 @@ pub fn monitor() -> Vec<Part> {
     let foot = squircle(8, [0.12, 0.083], 0.6);
     let foot = |z| ring(DVec3::new(0.0, 0.305, z), DVec3::X, DVec3::Y, &foot);
     vec![
-        part(
-            "Screen",
-            Shape::cuboid([-0.265, 0.265], [0.2645, 0.269], [0.86, 1.18]),
-        ),
-        part(
-            "Plastic",
-            Shape::cuboid([-0.275, 0.275], [0.27, 0.3], [0.85, 1.19]),
-        ),
-        part(
-            "Plastic",
-            Shape::cuboid([-0.03, 0.03], [0.295, 0.34], [0.98, 1.04]),
-        ),
-        part(
-            "Plastic",
-            Shape::lathe([0.0, 0.325], 8, &[(0.02, 0.745), (0.014, 1.0)]),
-        ),
+        part("Screen", Shape::cuboid([-0.265, 0.265], [0.2645, 0.269], [0.86, 1.18])),
+        part("Plastic", Shape::cuboid([-0.275, 0.275], [0.27, 0.3], [0.85, 1.19])),
+        part("Plastic", Shape::cuboid([-0.03, 0.03], [0.295, 0.34], [0.98, 1.04])),
+        part("Plastic", Shape::lathe([0.0, 0.325], 8, &[(0.02, 0.745), (0.014, 1.0)])),
         part("Plastic", Shape::loft(&[foot(DESK_M + GAP_M), foot(0.749)])),
     ]
 }
@@ -74,14 +49,8 @@ pub fn monitor() -> Vec<Part> {
 /// A flat keyboard, lower than the plane of the task area 10 mm above the desk.
 pub fn keyboard() -> Vec<Part> {
     vec![
-        part(
-            "Plastic",
-            Shape::cuboid([-0.22, 0.22], [-0.25, -0.11], [DESK_M + GAP_M, 0.747]),
-        ),
-        part(
-            "Plastic",
-            Shape::cuboid([-0.21, 0.21], [-0.24, -0.12], [0.746, 0.749]),
-        ),
+        part("Plastic", Shape::cuboid([-0.22, 0.22], [-0.25, -0.11], [DESK_M + GAP_M, 0.747])),
+        part("Plastic", Shape::cuboid([-0.21, 0.21], [-0.24, -0.12], [0.746, 0.749])),
     ]
 }
 
@@ -102,10 +71,7 @@ pub fn chair() -> Vec<Part> {
             let centre = outward * radius + DVec3::Z * z;
             ring(centre, across, DVec3::Z, &rectangle(half[0], half[1]))
         };
-        let beam = [
-            section(0.02, 0.095, [0.024, 0.02]),
-            section(0.3, 0.07, [0.014, 0.01]),
-        ];
+        let beam = [section(0.02, 0.095, [0.024, 0.02]), section(0.3, 0.07, [0.014, 0.01])];
         parts.push(part("Metal", Shape::loft(&beam)));
         let wheel = |offset: f64| {
             let centre = outward * 0.28 + across * offset + DVec3::Z * (0.025 + GAP_M);
@@ -115,15 +81,11 @@ pub fn chair() -> Vec<Part> {
     }
     let column = [(0.05, 0.065), (0.045, 0.125), (0.024, 0.13), (0.024, 0.4)];
     parts.push(part("Metal", Shape::lathe([0.0, 0.0], 8, &column)));
-    parts.push(part(
-        "Metal",
-        Shape::cuboid([-0.09, 0.09], [-0.12, 0.12], [0.385, 0.435]),
-    ));
-    let level = |y: f64, z: f64, outline: &[(f64, f64)]| {
-        ring(DVec3::new(0.0, y, z), DVec3::X, DVec3::Y, outline)
-    };
-    let spine = [(-0.105, 0.4), (-0.262, 0.5), (-0.242, 0.68)]
-        .map(|(y, z)| level(y, z, &rectangle(0.025, 0.012)));
+    parts.push(part("Metal", Shape::cuboid([-0.09, 0.09], [-0.12, 0.12], [0.385, 0.435])));
+    let level =
+        |y: f64, z: f64, outline: &[(f64, f64)]| ring(DVec3::new(0.0, y, z), DVec3::X, DVec3::Y, outline);
+    let spine =
+        [(-0.105, 0.4), (-0.262, 0.5), (-0.242, 0.68)].map(|(y, z)| level(y, z, &rectangle(0.025, 0.012)));
     parts.push(part("Metal", Shape::loft(&spine)));
     let seat = [(0.86, 0.425), (1.0, 0.455), (0.97, 0.49), (0.75, 0.5)]
         .map(|(scale, z)| level(0.0, z, &squircle(16, [0.24 * scale, 0.23 * scale], 0.65)));
@@ -131,14 +93,8 @@ pub fn chair() -> Vec<Part> {
     parts.push(part("Fabric", backrest()));
     for side in [-1.0, 1.0] {
         let across = |a: f64, b: f64| if side < 0.0 { [-b, -a] } else { [a, b] };
-        parts.push(part(
-            "Plastic",
-            Shape::cuboid(across(0.22, 0.25), [-0.025, 0.025], [0.45, 0.65]),
-        ));
-        parts.push(part(
-            "Plastic",
-            Shape::cuboid(across(0.2, 0.27), [-0.12, 0.14], [0.645, 0.665]),
-        ));
+        parts.push(part("Plastic", Shape::cuboid(across(0.22, 0.25), [-0.025, 0.025], [0.45, 0.65])));
+        parts.push(part("Plastic", Shape::cuboid(across(0.2, 0.27), [-0.12, 0.14], [0.645, 0.665])));
     }
     parts
 }
@@ -155,9 +111,7 @@ fn backrest() -> Shape {
     ];
     let stations = [-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0];
     let rings = levels.map(|(z, half_width, middle)| {
-        let face = |s: f64, thickness: f64| {
-            DVec3::new(s * half_width, middle + 0.06 * s * s + thickness, z)
-        };
+        let face = |s: f64, thickness: f64| DVec3::new(s * half_width, middle + 0.06 * s * s + thickness, z);
         let rear = stations.iter().map(|&s| face(s, -0.015));
         let front = stations.iter().rev().map(|&s| face(s, 0.015));
         rear.chain(front).collect::<Vec<_>>()
@@ -167,20 +121,11 @@ fn backrest() -> Shape {
 
 /// A cupboard with two doors, its back at y = 0 in the wall.
 pub fn cabinet() -> Vec<Part> {
-    let mut parts = vec![part(
-        "Wood",
-        Shape::cuboid([-0.4, 0.4], [-0.4, SUNK_M], [GAP_M, 1.2]),
-    )];
+    let mut parts = vec![part("Wood", Shape::cuboid([-0.4, 0.4], [-0.4, SUNK_M], [GAP_M, 1.2]))];
     for side in [-1.0, 1.0] {
         let across = |a: f64, b: f64| if side < 0.0 { [-b, -a] } else { [a, b] };
-        parts.push(part(
-            "Wood",
-            Shape::cuboid(across(0.001, 0.395), [-0.42, -0.401], [0.03, 1.19]),
-        ));
-        parts.push(part(
-            "Metal",
-            Shape::cuboid(across(0.03, 0.042), [-0.44, -0.415], [0.6, 0.75]),
-        ));
+        parts.push(part("Wood", Shape::cuboid(across(0.001, 0.395), [-0.42, -0.401], [0.03, 1.19])));
+        parts.push(part("Metal", Shape::cuboid(across(0.03, 0.042), [-0.44, -0.415], [0.6, 0.75])));
     }
     parts
 }
@@ -190,21 +135,13 @@ pub const BOOK_BOARDS_M: [f64; 4] = [0.45, 0.84, 1.23, 1.62];
 
 /// A shelf unit, its back at y = 0 in the wall.
 pub fn shelf() -> Vec<Part> {
-    let mut parts = vec![part(
-        "Wood",
-        Shape::cuboid([-0.483, 0.483], [-0.012, SUNK_M - 0.0002], [0.05, 1.985]),
-    )];
+    let mut parts =
+        vec![part("Wood", Shape::cuboid([-0.483, 0.483], [-0.012, SUNK_M - 0.0002], [0.05, 1.985]))];
     for x in [[-0.5, -0.48], [0.48, 0.5]] {
-        parts.push(part(
-            "Wood",
-            Shape::cuboid(x, [-0.33, SUNK_M], [GAP_M, 2.0]),
-        ));
+        parts.push(part("Wood", Shape::cuboid(x, [-0.33, SUNK_M], [GAP_M, 2.0])));
     }
     for z in [0.06].into_iter().chain(BOOK_BOARDS_M).chain([1.99]) {
-        parts.push(part(
-            "Wood",
-            Shape::cuboid([-0.485, 0.485], [-0.325, -0.006], [z - 0.02, z]),
-        ));
+        parts.push(part("Wood", Shape::cuboid([-0.485, 0.485], [-0.325, -0.006], [z - 0.02, z])));
     }
     parts
 }
@@ -246,15 +183,13 @@ pub fn plant() -> Vec<Part> {
         let outward = DVec3::new(cos, sin, 0.0);
         let across = DVec3::new(-sin, cos, 0.0);
         let tall = if leaf % 2 == 0 { 1.0 } else { 0.8 };
-        let blade = [
-            (0.05, 0.26, 0.008),
-            (0.13, 0.26 + 0.45 * tall, 0.035),
-            (0.26, 0.26 + 0.7 * tall, 0.004),
-        ]
-        .map(|(radius, z, half_width)| {
-            let centre = outward * radius + DVec3::Z * z;
-            ring(centre, outward, across, &rectangle(0.003, half_width))
-        });
+        let blade =
+            [(0.05, 0.26, 0.008), (0.13, 0.26 + 0.45 * tall, 0.035), (0.26, 0.26 + 0.7 * tall, 0.004)].map(
+                |(radius, z, half_width)| {
+                    let centre = outward * radius + DVec3::Z * z;
+                    ring(centre, outward, across, &rectangle(0.003, half_width))
+                },
+            );
         parts.push(part("Leaf", Shape::loft(&blade)));
     }
     parts

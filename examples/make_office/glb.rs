@@ -44,35 +44,17 @@ impl Model {
 
     /// Adds a group without geometry and returns its index.
     pub fn group(&mut self, name: &str) -> usize {
-        self.nodes.push(Node {
-            name: name.into(),
-            group: None,
-            mesh: None,
-            at: DVec3::ZERO,
-            turn_deg: 0.0,
-        });
+        self.nodes.push(Node { name: name.into(), group: None, mesh: None, at: DVec3::ZERO, turn_deg: 0.0 });
         self.nodes.len() - 1
     }
 
     /// Places a mesh.
     pub fn place(&mut self, name: impl Into<String>, mesh: usize, at: DVec3, turn_deg: f64) {
-        self.nodes.push(Node {
-            name: name.into(),
-            group: None,
-            mesh: Some(mesh),
-            at,
-            turn_deg,
-        });
+        self.nodes.push(Node { name: name.into(), group: None, mesh: Some(mesh), at, turn_deg });
     }
 
     /// Adds a mesh that is used once, in place, as a member of a group.
-    pub fn fixed(
-        &mut self,
-        group: Option<usize>,
-        name: &'static str,
-        material: &'static str,
-        shape: Shape,
-    ) {
+    pub fn fixed(&mut self, group: Option<usize>, name: &'static str, material: &'static str, shape: Shape) {
         let mesh = self.mesh(name, vec![Part { material, shape }]);
         self.place(name, mesh, DVec3::ZERO, 0.0);
         self.nodes.last_mut().expect("just placed").group = group;
@@ -100,10 +82,7 @@ pub fn write(model: &Model) -> Vec<u8> {
     let meshes = model
         .meshes
         .iter()
-        .map(|mesh| JsonMesh {
-            name: mesh.name,
-            primitives: file.primitives(&mesh.parts),
-        })
+        .map(|mesh| JsonMesh { name: mesh.name, primitives: file.primitives(&mesh.parts) })
         .collect();
     let nodes = model
         .nodes
@@ -124,25 +103,18 @@ pub fn write(model: &Model) -> Vec<u8> {
         .collect();
     file.bytes.resize(file.bytes.len().next_multiple_of(4), 0);
     let json = Json {
-        asset: Asset {
-            version: "2.0",
-            generator: "gershun make_office",
-        },
+        asset: Asset { version: "2.0", generator: "gershun make_office" },
         scene: 0,
         scenes: [JsonScene {
             name: "Office",
-            nodes: (0..model.nodes.len())
-                .filter(|&node| model.nodes[node].group.is_none())
-                .collect(),
+            nodes: (0..model.nodes.len()).filter(|&node| model.nodes[node].group.is_none()).collect(),
         }],
         nodes,
         meshes,
         materials: file.materials.iter().map(|&name| Named { name }).collect(),
         accessors: file.accessors,
         buffer_views: file.views,
-        buffers: [Buffer {
-            byte_length: file.bytes.len(),
-        }],
+        buffers: [Buffer { byte_length: file.bytes.len() }],
     };
     let mut text = serde_json::to_vec(&json).expect("plain data is always JSON");
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -192,40 +164,29 @@ impl File {
                     let corners = part.shape.vertices.iter();
                     positions.extend(corners.map(|&p| y_up(p).as_vec3().to_array()));
                     let used = part.shape.triangles.iter().flatten();
-                    indices.extend(used.map(|&v| {
-                        u16::try_from(first + v).expect("a piece of furniture has few vertices")
-                    }));
+                    indices.extend(
+                        used.map(|&v| {
+                            u16::try_from(first + v).expect("a piece of furniture has few vertices")
+                        }),
+                    );
                 }
                 self.primitive(name, &positions, &indices)
             })
             .collect()
     }
 
-    fn primitive(
-        &mut self,
-        material: &'static str,
-        positions: &[[f32; 3]],
-        indices: &[u16],
-    ) -> Primitive {
+    fn primitive(&mut self, material: &'static str, positions: &[[f32; 3]], indices: &[u16]) -> Primitive {
         let extreme = |pick: fn(f32, f32) -> f32| {
             let axis = |k: usize| positions.iter().map(|p| p[k]).reduce(pick);
             Some([0, 1, 2].map(|k| axis(k).expect("a shape has vertices")))
         };
-        let bytes: Vec<u8> = positions
-            .iter()
-            .flatten()
-            .flat_map(|x| x.to_le_bytes())
-            .collect();
+        let bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
         let position = self.accessor(&bytes, 34962, 5126, "VEC3", positions.len());
         self.accessors[position].min = extreme(f32::min);
         self.accessors[position].max = extreme(f32::max);
         let bytes: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
         let index = self.accessor(&bytes, 34963, 5123, "SCALAR", indices.len());
-        Primitive {
-            attributes: Attributes { position },
-            indices: index,
-            material: self.material(material),
-        }
+        Primitive { attributes: Attributes { position }, indices: index, material: self.material(material) }
     }
 
     fn material(&mut self, name: &'static str) -> usize {
@@ -245,12 +206,7 @@ impl File {
         count: usize,
     ) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.views.push(View {
-            buffer: 0,
-            byte_offset: self.bytes.len(),
-            byte_length: bytes.len(),
-            target,
-        });
+        self.views.push(View { buffer: 0, byte_offset: self.bytes.len(), byte_length: bytes.len(), target });
         self.bytes.extend(bytes);
         self.accessors.push(Accessor {
             buffer_view: self.views.len() - 1,

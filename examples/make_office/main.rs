@@ -41,10 +41,7 @@ pub fn make() -> (usize, [Made; 3]) {
 /// Rated and integrated flux differ by less than 0.1 %.
 fn check_flux(text: &str, rated_lm: f64) {
     let flux_lm = photometry::flux_of(text);
-    assert!(
-        (flux_lm / rated_lm - 1.0).abs() < 1e-3,
-        "{flux_lm} lm integrated, {rated_lm} lm rated"
-    );
+    assert!((flux_lm / rated_lm - 1.0).abs() < 1e-3, "{flux_lm} lm integrated, {rated_lm} lm rated");
 }
 
 /// Beyond 65° the panel stays below 3000 cd/m² and the louvre luminaire below 200 cd/m².
@@ -65,11 +62,7 @@ fn main() -> std::io::Result<()> {
     println!("{triangles} triangles");
     for file in files {
         std::fs::write(folder.join(file.name), &file.bytes)?;
-        println!(
-            "{}: {} bytes",
-            folder.join(file.name).display(),
-            file.bytes.len()
-        );
+        println!("{}: {} bytes", folder.join(file.name).display(), file.bytes.len());
     }
     Ok(())
 }

@@ -12,24 +12,15 @@ pub struct Quadrant {
 
 impl Quadrant {
     fn sample(c_step: f64, gamma_step: f64, intensity: impl Fn(f64, f64) -> f64) -> Self {
-        let angles = |step: f64| -> Vec<f64> {
-            (0..=(90.0 / step) as u32)
-                .map(|k| f64::from(k) * step)
-                .collect()
-        };
+        let angles =
+            |step: f64| -> Vec<f64> { (0..=(90.0 / step) as u32).map(|k| f64::from(k) * step).collect() };
         let (c_deg, gamma_deg) = (angles(c_step), angles(gamma_step));
         let plane = |&c: &f64| {
             let along = gamma_deg.iter();
-            along
-                .map(|&gamma| intensity(c.to_radians(), gamma.to_radians()).max(0.0))
-                .collect()
+            along.map(|&gamma| intensity(c.to_radians(), gamma.to_radians()).max(0.0)).collect()
         };
         let intensity = c_deg.iter().map(plane).collect();
-        Self {
-            c_deg,
-            gamma_deg,
-            intensity,
-        }
+        Self { c_deg, gamma_deg, intensity }
     }
 
     /// Scales to `flux` and rounds to one decimal.
@@ -58,9 +49,8 @@ impl Quadrant {
             })
             .collect();
         let sectors = self.c_deg.windows(2).zip(planes.windows(2));
-        let quarter: f64 = sectors
-            .map(|(c, zone)| (c[1] - c[0]).to_radians() * 0.5 * (zone[0] + zone[1]))
-            .sum();
+        let quarter: f64 =
+            sectors.map(|(c, zone)| (c[1] - c[0]).to_radians() * 0.5 * (zone[0] + zone[1])).sum();
         4.0 * quarter
     }
 
@@ -68,10 +58,7 @@ impl Quadrant {
     pub fn at(&self, c_deg: f64, gamma_deg: f64) -> f64 {
         let locate = |angles: &[f64], x: f64| {
             let last = angles.len() - 2;
-            let cell = angles
-                .partition_point(|&a| a <= x)
-                .saturating_sub(1)
-                .min(last);
+            let cell = angles.partition_point(|&a| a <= x).saturating_sub(1).min(last);
             (cell, (x - angles[cell]) / (angles[cell + 1] - angles[cell]))
         };
         let (c, s) = locate(&self.c_deg, c_deg);
@@ -82,10 +69,7 @@ impl Quadrant {
 
     /// Largest I / (A cosγ) from 65° to 85°, per m² of opening.
     pub fn luminance_beyond_65(&self, opening_m2: f64) -> f64 {
-        let planes = self
-            .intensity
-            .iter()
-            .flat_map(|plane| self.gamma_deg.iter().zip(plane));
+        let planes = self.intensity.iter().flat_map(|plane| self.gamma_deg.iter().zip(plane));
         planes
             .filter(|(gamma, _)| (65.0..=85.0).contains(*gamma))
             .map(|(gamma, value)| value / (opening_m2 * gamma.to_radians().cos()))
@@ -98,8 +82,7 @@ impl Quadrant {
         let edge_h = 2.0 * room_index;
         let rows = (edge_h / 1.25).ceil() as u32;
         let inside = |shift_h: f64| {
-            let stays =
-                |row: &u32| (f64::from(*row) + 0.5) / f64::from(rows) * edge_h + shift_h < edge_h;
+            let stays = |row: &u32| (f64::from(*row) + 0.5) / f64::from(rows) * edge_h + shift_h < edge_h;
             (0..rows).filter(stays).count() as f64 / f64::from(rows)
         };
         let (steps_c, steps_gamma) = (90, 360);
@@ -200,13 +183,7 @@ pub fn panel_ldt() -> String {
     lines.extend((0..37).map(|k| format!("{}", k * 5)));
     for plane in &panel.intensity {
         let above = std::iter::repeat_n(0.0, 37 - plane.len());
-        lines.extend(
-            plane
-                .iter()
-                .copied()
-                .chain(above)
-                .map(|i| format!("{i:.1}")),
-        );
+        lines.extend(plane.iter().copied().chain(above).map(|i| format!("{i:.1}")));
     }
     lines.join("\r\n") + "\r\n"
 }
@@ -230,9 +207,7 @@ pub fn louvre_ies() -> String {
     .map(String::from)
     .into();
     let (gammas, planes) = (louvre.gamma_deg.len(), louvre.c_deg.len());
-    lines.push(format!(
-        "1 {LOUVRE_LM} 1 {gammas} {planes} 1 2 {width} {length} 0"
-    ));
+    lines.push(format!("1 {LOUVRE_LM} 1 {gammas} {planes} 1 2 {width} {length} 0"));
     lines.push("1 1 30".into());
     let mut row = |values: &[f64], decimals: usize| {
         for chunk in values.chunks(13) {
@@ -257,10 +232,7 @@ pub fn louvre_ies() -> String {
 pub fn flux_of(text: &str) -> f64 {
     let (quadrant, scale) = if text.starts_with("IESNA") {
         let data = text.split("TILT=NONE").nth(1).unwrap_or_default();
-        let numbers: Vec<f64> = data
-            .split_whitespace()
-            .filter_map(|w| w.parse().ok())
-            .collect();
+        let numbers: Vec<f64> = data.split_whitespace().filter_map(|w| w.parse().ok()).collect();
         let (gammas, planes) = (numbers[3] as usize, numbers[4] as usize);
         let (gamma, rest) = numbers[13..].split_at(gammas);
         let (c, values) = rest.split_at(planes);
@@ -292,9 +264,6 @@ fn tabulated(c_deg: &[f64], gamma_deg: &[f64], values: &[f64]) -> Quadrant {
     Quadrant {
         c_deg: c_deg.to_vec(),
         gamma_deg: gamma_deg.to_vec(),
-        intensity: values
-            .chunks(gamma_deg.len())
-            .map(<[f64]>::to_vec)
-            .collect(),
+        intensity: values.chunks(gamma_deg.len()).map(<[f64]>::to_vec).collect(),
     }
 }

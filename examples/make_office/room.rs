@@ -38,56 +38,28 @@ fn shell(model: &mut Model) {
     model.fixed(room, "Wall_S", "Wall", south);
     let wall_n = sheet(north, ex, ez, &along_x, &up, None);
     model.fixed(room, "Wall_N", "Wall", wall_n);
-    let wall_w = sheet(
-        DVec3::ZERO,
-        ey,
-        ez,
-        &[0.0, 0.4, 1.4, y],
-        &[0.0, 2.1, z],
-        Some([1, 0]),
-    );
+    let wall_w = sheet(DVec3::ZERO, ey, ez, &[0.0, 0.4, 1.4, y], &[0.0, 2.1, z], Some([1, 0]));
     model.fixed(room, "Wall_W", "Wall", wall_w);
-    let wall_e = sheet(
-        east,
-        ez,
-        ey,
-        &[0.0, 0.1, 2.4, z],
-        &[0.0, 1.2, 4.4, y],
-        Some([1, 1]),
-    );
+    let wall_e = sheet(east, ez, ey, &[0.0, 0.1, 2.4, z], &[0.0, 1.2, 4.4, y], Some([1, 1]));
     model.fixed(room, "Wall_E", "Wall", wall_e);
 }
 
 fn door(model: &mut Model) {
-    let frame = frame(
-        [-0.08, 0.012],
-        [0.37, 1.43, -0.02, 2.13],
-        [0.45, 1.35, 0.01, 2.05],
-    );
+    let frame = frame([-0.08, 0.012], [0.37, 1.43, -0.02, 2.13], [0.45, 1.35, 0.01, 2.05]);
     model.fixed(None, "Door_Frame", "Metal", frame);
     let leaf = Shape::cuboid([-0.06, -0.02], [0.44, 1.36], [0.005, 2.06]);
     model.fixed(None, "Door_Leaf", "Door", leaf);
     let spindle = Shape::cuboid([-0.03, 0.03], [1.262, 1.278], [1.042, 1.058]);
     let lever = Shape::cuboid([0.02, 0.036], [1.15, 1.285], [1.038, 1.062]);
-    let handle = [spindle, lever].map(|shape| Part {
-        material: "Metal",
-        shape,
-    });
+    let handle = [spindle, lever].map(|shape| Part { material: "Metal", shape });
     let mesh = model.mesh("Door_Handle", handle.into());
     model.place("Door_Handle", mesh, DVec3::ZERO, 0.0);
 }
 
 fn partition(model: &mut Model) {
-    let ring = frame(
-        [7.97, 8.03],
-        [1.17, 4.43, 0.07, 2.43],
-        [1.25, 4.35, 0.15, 2.35],
-    );
+    let ring = frame([7.97, 8.03], [1.17, 4.43, 0.07, 2.43], [1.25, 4.35, 0.15, 2.35]);
     let mullion = |y: f64| Shape::cuboid([7.975, 8.025], [y - 0.02, y + 0.02], [0.14, 2.36]);
-    let parts = [ring, mullion(2.28), mullion(3.32)].map(|shape| Part {
-        material: "Metal",
-        shape,
-    });
+    let parts = [ring, mullion(2.28), mullion(3.32)].map(|shape| Part { material: "Metal", shape });
     let mesh = model.mesh("Partition_Frame", parts.into());
     model.place("Partition_Frame", mesh, DVec3::ZERO, 0.0);
     let east = DVec3::X * ROOM_M.x;

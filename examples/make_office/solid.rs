@@ -73,18 +73,14 @@ impl Shape {
         vs: &[f64],
         hole: Option<[usize; 2]>,
     ) -> Self {
-        let vertices = vs
-            .iter()
-            .flat_map(|&b| us.iter().map(move |&a| origin + u * a + v * b))
-            .collect();
+        let vertices = vs.iter().flat_map(|&b| us.iter().map(move |&a| origin + u * a + v * b)).collect();
         let columns = us.len();
         let mut triangles = Vec::new();
         for row in 0..vs.len() - 1 {
             for column in 0..columns - 1 {
                 if hole != Some([column, row]) {
                     let a = row * columns + column;
-                    let [a, b, c, d] =
-                        [a, a + 1, a + columns + 1, a + columns].map(|index| index as u32);
+                    let [a, b, c, d] = [a, a + 1, a + columns + 1, a + columns].map(|index| index as u32);
                     triangles.extend([[a, b, c], [a, c, d]]);
                 }
             }
@@ -93,15 +89,8 @@ impl Shape {
     }
 
     fn new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
-        let vertices = vertices
-            .into_iter()
-            .map(|p| (p * 1e5).round() / 1e5)
-            .collect();
-        Self {
-            vertices,
-            triangles,
-            closed,
-        }
+        let vertices = vertices.into_iter().map(|p| (p * 1e5).round() / 1e5).collect();
+        Self { vertices, triangles, closed }
     }
 }
 
@@ -116,10 +105,7 @@ fn join(triangles: &mut Vec<[u32; 3]>, low: u32, high: u32, n: u32) {
 
 /// A ring in the plane of `e1` and `e2`; the loft runs towards e1 × e2.
 pub fn ring(centre: DVec3, e1: DVec3, e2: DVec3, outline: &[(f64, f64)]) -> Vec<DVec3> {
-    outline
-        .iter()
-        .map(|&(a, b)| centre + e1 * a + e2 * b)
-        .collect()
+    outline.iter().map(|&(a, b)| centre + e1 * a + e2 * b).collect()
 }
 
 /// Corners of a regular polygon, the first on the first axis.

@@ -62,7 +62,10 @@ fn adaptive(
     let quarters = [[0.0, 0.0], [half, 0.0], [0.0, half], [half, half]]
         .map(|shift| [corner[0] + shift[0], corner[1] + shift[1]])
         .map(|corner| (corner, product(&GAUSS3, corner, half, value)));
-    quarters.iter().map(|&(corner, fine)| adaptive(corner, half, fine, 0.5 * tolerance, depth + 1, value)).sum()
+    quarters
+        .iter()
+        .map(|&(corner, fine)| adaptive(corner, half, fine, 0.5 * tolerance, depth + 1, value))
+        .sum()
 }
 
 fn product(rule: &[(f64, f64)], corner: [f64; 2], edge: f64, value: &impl Fn([f64; 2]) -> f64) -> f64 {

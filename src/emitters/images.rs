@@ -62,14 +62,17 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
         let offset_m = normal.dot(mesh.corners(triangle as usize)[0]);
         let same = found.iter().position(|(mirror, _)| {
             let sign = mirror.normal.dot(normal).signum();
-            mirror.normal.dot(normal).abs() > 1.0 - 1e-12 && (offset_m * sign - mirror.offset_m).abs() < 1e-9 * size_m
+            mirror.normal.dot(normal).abs() > 1.0 - 1e-12
+                && (offset_m * sign - mirror.offset_m).abs() < 1e-9 * size_m
         });
         match same {
             Some(known) => {
                 found[known].0.triangles.push(triangle);
                 found[known].1 += area_m2;
             }
-            None if found.len() < 4096 => found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2)),
+            None if found.len() < 4096 => {
+                found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2))
+            }
             None => {}
         }
     }

@@ -58,7 +58,8 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
         for point in 0..points {
             let u = if points == 1 { [0.5, 0.5] } else { sequence.point(point, &mut rng) };
             let arrival = emitters.arrival(source, eye, u);
-            let element_sr = projected_area(emitters, source, arrival.direction) / (arrival.distance_m * arrival.distance_m);
+            let element_sr = projected_area(emitters, source, arrival.direction)
+                / (arrival.distance_m * arrival.distance_m);
             whole += element_sr;
             if !(arrival.normal_lx > 0.0) {
                 continue;

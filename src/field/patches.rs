@@ -116,16 +116,15 @@ fn part_at([s, t]: [f64; 2], divisions: u32) -> u32 {
     let n = f64::from(divisions);
     let strip = ((s * n) as u32).min(divisions - 1);
     let cell = ((t * n) as u32).min(divisions - 1 - strip);
-    let inverted = (s * n - f64::from(strip)) + (t * n - f64::from(cell)) > 1.0 && cell + strip + 1 < divisions;
+    let inverted =
+        (s * n - f64::from(strip)) + (t * n - f64::from(cell)) > 1.0 && cell + strip + 1 < divisions;
     strip * (2 * divisions - strip) + 2 * cell + u32::from(inverted)
 }
 
 /// Weights in the triangle of the weights `local` in one part.
 fn within(part: u32, divisions: u32, local: [f64; 2]) -> [f64; 2] {
-    let strip = (0..divisions)
-        .take_while(|&strip| strip * (2 * divisions - strip) <= part)
-        .last()
-        .unwrap_or(0);
+    let strip =
+        (0..divisions).take_while(|&strip| strip * (2 * divisions - strip) <= part).last().unwrap_or(0);
     let rest = part - strip * (2 * divisions - strip);
     let (cell, inverted) = (rest / 2, rest % 2 == 1);
     let n = f64::from(divisions);
@@ -151,12 +150,19 @@ mod tests {
         let small = mesh.add_surface("small", 0, true);
         for shift in [0.0, 0.02, 0.9] {
             let o = DVec3::new(shift, 0.0, 1.0);
-            mesh.add_quad([o, o + DVec3::X * 0.01, o + DVec3::new(0.01, 0.01, 0.0), o + DVec3::Y * 0.01], small);
+            mesh.add_quad(
+                [o, o + DVec3::X * 0.01, o + DVec3::new(0.01, 0.01, 0.0), o + DVec3::Y * 0.01],
+                small,
+            );
         }
         let patches = Patches::new(&mesh, 0.05, |_| true);
         let total: f64 = (0..patches.len()).map(|patch| patches.area_m2(2 * patch)).sum();
         assert!((total - 6.0003).abs() < 1e-9, "{total}");
-        assert_eq!(patches.side_at(2, [0.1, 0.1], true), patches.side_at(4, [0.1, 0.1], true), "near neighbours join");
+        assert_eq!(
+            patches.side_at(2, [0.1, 0.1], true),
+            patches.side_at(4, [0.1, 0.1], true),
+            "near neighbours join"
+        );
         assert_ne!(patches.side_at(2, [0.1, 0.1], true), patches.side_at(6, [0.1, 0.1], true));
         let mut rng = Rng::new(1, 1, 1);
         for side in 0..patches.sides() {

@@ -37,9 +37,7 @@ pub struct Surface {
 impl Mesh {
     /// Corner positions of triangle `index`.
     pub fn corners(&self, index: usize) -> [DVec3; 3] {
-        self.triangles[index]
-            .vertices
-            .map(|vertex| self.positions[vertex as usize])
+        self.triangles[index].vertices.map(|vertex| self.positions[vertex as usize])
     }
 
     /// Unit normal of the front side and area in m² of triangle `index`.
@@ -51,17 +49,8 @@ impl Mesh {
     }
 
     /// Adds a surface and returns its index.
-    pub fn add_surface(
-        &mut self,
-        name: impl Into<String>,
-        material: usize,
-        furniture: bool,
-    ) -> u32 {
-        self.surfaces.push(Surface {
-            name: name.into(),
-            material,
-            furniture,
-        });
+    pub fn add_surface(&mut self, name: impl Into<String>, material: usize, furniture: bool) -> u32 {
+        self.surfaces.push(Surface { name: name.into(), material, furniture });
         (self.surfaces.len() - 1) as u32
     }
 
@@ -70,21 +59,14 @@ impl Mesh {
         let first = self.positions.len() as u32;
         self.positions.extend(corners);
         for vertices in [[0, 1, 2], [0, 2, 3]] {
-            self.triangles.push(Triangle {
-                vertices: vertices.map(|v| first + v),
-                surface,
-            });
+            self.triangles.push(Triangle { vertices: vertices.map(|v| first + v), surface });
         }
     }
 
     /// Smallest and largest coordinates; `None` for an empty mesh.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let first = *self.positions.first()?;
-        Some(
-            self.positions
-                .iter()
-                .fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p))),
-        )
+        Some(self.positions.iter().fold((first, first), |(lo, hi), &p| (lo.min(p), hi.max(p))))
     }
 
     /// Area in m² of each surface (one side).

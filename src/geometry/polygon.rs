@@ -6,9 +6,7 @@ use super::DVec2;
 /// Signed area in m², positive counter-clockwise: ½ Σ (x_i y_{i+1} − x_{i+1} y_i).
 pub fn signed_area_m2(outline: &[DVec2]) -> f64 {
     let origin = outline.first().copied().unwrap_or_default();
-    0.5 * edges(outline)
-        .map(|(a, b)| (a - origin).perp_dot(b - origin))
-        .sum::<f64>()
+    0.5 * edges(outline).map(|(a, b)| (a - origin).perp_dot(b - origin)).sum::<f64>()
 }
 
 /// Whether a point lies inside, or within `tolerance_m` of the outline.
@@ -18,9 +16,7 @@ pub fn contains(outline: &[DVec2], point: DVec2, tolerance_m: f64) -> bool {
         if distance_to_segment_m(point, a, b) <= tolerance_m {
             return true;
         }
-        if (a.y > point.y) != (b.y > point.y)
-            && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
-        {
+        if (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y) {
             inside = !inside;
         }
     }
@@ -66,8 +62,7 @@ pub fn triangulate(outline: &[DVec2]) -> Option<Vec<[u32; 3]>> {
         // A vertex on a straight edge is no ear but can leave once its neighbours lie in line.
         let straight = || {
             (0..n).find(|&i| {
-                let [a, b, c] =
-                    [left[(i + n - 1) % n], left[i], left[(i + 1) % n]].map(|v| outline[v]);
+                let [a, b, c] = [left[(i + n - 1) % n], left[i], left[(i + 1) % n]].map(|v| outline[v]);
                 (b - a).perp_dot(c - b).abs() <= 1e-12 * (c - a).length_squared()
             })
         };
@@ -93,18 +88,12 @@ pub fn edges(outline: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
 }
 
 fn in_triangle(p: DVec2, a: DVec2, b: DVec2, c: DVec2) -> bool {
-    (b - a).perp_dot(p - a) >= 0.0
-        && (c - b).perp_dot(p - b) >= 0.0
-        && (a - c).perp_dot(p - c) >= 0.0
+    (b - a).perp_dot(p - a) >= 0.0 && (c - b).perp_dot(p - b) >= 0.0 && (a - c).perp_dot(p - c) >= 0.0
 }
 
 fn distance_to_segment_m(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let length2 = (b - a).length_squared();
-    let t = if length2 > 0.0 {
-        ((p - a).dot(b - a) / length2).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let t = if length2 > 0.0 { ((p - a).dot(b - a) / length2).clamp(0.0, 1.0) } else { 0.0 };
     (p - (a + t * (b - a))).length()
 }
 
@@ -131,22 +120,8 @@ mod tests {
     #[test]
     fn triangles_of_a_concave_outline_fill_it_once() {
         for points in [
-            &[
-                [0.0, 0.0],
-                [4.0, 0.0],
-                [4.0, 2.0],
-                [2.0, 2.0],
-                [2.0, 5.0],
-                [0.0, 5.0],
-            ][..],
-            &[
-                [0.0, 0.0],
-                [1.0, 0.0],
-                [2.0, 0.0],
-                [2.0, 2.0],
-                [1.0, 0.5],
-                [0.0, 2.0],
-            ][..],
+            &[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0], [2.0, 5.0], [0.0, 5.0]][..],
+            &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0]][..],
         ] {
             let outline = outline(points);
             let triangles = triangulate(&outline).unwrap();

@@ -48,12 +48,7 @@ pub struct Tracer {
 
 impl std::fmt::Debug for Tracer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "Tracer({} triangles, {} nodes)",
-            self.normals.len(),
-            self.nodes.len()
-        )
+        write!(f, "Tracer({} triangles, {} nodes)", self.normals.len(), self.nodes.len())
     }
 }
 
@@ -122,16 +117,9 @@ impl Tracer {
                 aabb
             })
             .collect();
-        let params = if boxes.len() < 100_000 {
-            BvhBuildParams::slow_build()
-        } else {
-            BvhBuildParams::medium_build()
-        };
-        let params = BvhBuildParams {
-            max_prims_per_leaf: LANES as u32,
-            pre_split: false,
-            ..params
-        };
+        let params =
+            if boxes.len() < 100_000 { BvhBuildParams::slow_build() } else { BvhBuildParams::medium_build() };
+        let params = BvhBuildParams { max_prims_per_leaf: LANES as u32, pre_split: false, ..params };
         let bvh = build_bvh2(&boxes, params, &mut std::time::Duration::default());
 
         let mut panes: Vec<Pane> = Vec::new();
@@ -148,9 +136,7 @@ impl Tracer {
         let mut tracer = Self {
             nodes: Vec::new(),
             packs: Vec::new(),
-            normals: (0..mesh.triangles.len())
-                .map(|index| mesh.normal_and_area(index).0)
-                .collect(),
+            normals: (0..mesh.triangles.len()).map(|index| mesh.normal_and_area(index).0).collect(),
             surface_of: mesh.triangles.iter().map(|t| t.surface).collect(),
             pane_of: mesh
                 .triangles
@@ -165,10 +151,7 @@ impl Tracer {
         };
         let depth = tracer.collapse(&bvh, mesh);
         tracer.stack_need = (WIDTH - 1) * depth + WIDTH;
-        assert!(
-            tracer.stack_need <= DEEP,
-            "obvhs keeps its trees below a depth of a few hundred"
-        );
+        assert!(tracer.stack_need <= DEEP, "obvhs keeps its trees below a depth of a few hundred");
         tracer
     }
 
@@ -200,13 +183,7 @@ impl Tracer {
 
     /// Share of light that passes straight from `origin` along `direction` over `distance_m`:
     /// 0 behind anything opaque, the product of pane transmittances otherwise.
-    pub fn transmittance(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        distance_m: f64,
-        blind: &[u32],
-    ) -> f64 {
+    pub fn transmittance(&self, origin: DVec3, direction: DVec3, distance_m: f64, blind: &[u32]) -> f64 {
         let ray = self.prepare(origin, direction);
         #[cfg(target_arch = "x86_64")]
         if self.simd {
@@ -326,11 +303,7 @@ impl Tracer {
         let local = (origin - self.centre).as_vec3();
         let inverse = |d: f64| {
             let d = d as f32;
-            1.0 / if d.abs() < 1e-20 {
-                1e-20f32.copysign(d)
-            } else {
-                d
-            }
+            1.0 / if d.abs() < 1e-20 { 1e-20f32.copysign(d) } else { d }
         };
         Prepared {
             origin: [o[x], o[y], o[z]],
@@ -473,23 +446,14 @@ fn is_blind(blind: &[u32], tracer: &Tracer, triangle: u32) -> bool {
 }
 
 impl Node {
-    const EMPTY: Self = Self {
-        lo: [[f32::INFINITY; WIDTH]; 3],
-        hi: [[f32::NEG_INFINITY; WIDTH]; 3],
-        child: [EMPTY; WIDTH],
-    };
+    const EMPTY: Self =
+        Self { lo: [[f32::INFINITY; WIDTH]; 3], hi: [[f32::NEG_INFINITY; WIDTH]; 3], child: [EMPTY; WIDTH] };
 }
 
 impl Pack {
     fn new(mesh: &Mesh, members: &[u32]) -> Self {
-        assert!(
-            members.len() <= LANES,
-            "obvhs was asked for at most {LANES} triangles a leaf"
-        );
-        let mut pack = Self {
-            corner: [[[0.0; LANES]; 3]; 3],
-            id: [EMPTY; LANES],
-        };
+        assert!(members.len() <= LANES, "obvhs was asked for at most {LANES} triangles a leaf");
+        let mut pack = Self { corner: [[[0.0; LANES]; 3]; 3], id: [EMPTY; LANES] };
         for (lane, &id) in members.iter().enumerate() {
             pack.id[lane] = id;
             for (vertex, corner) in mesh.corners(id as usize).iter().enumerate() {
@@ -509,7 +473,8 @@ fn slabs(node: &Node, ray: &Prepared, limit: f32) -> ([f32; WIDTH], [bool; WIDTH
     let mut far = [limit; WIDTH];
     for axis in 0..3 {
         let (o, inverse) = (ray.origin32[axis], ray.inverse32[axis]);
-        let (lo, hi) = if inverse >= 0.0 { (&node.lo[axis], &node.hi[axis]) } else { (&node.hi[axis], &node.lo[axis]) };
+        let (lo, hi) =
+            if inverse >= 0.0 { (&node.lo[axis], &node.hi[axis]) } else { (&node.hi[axis], &node.lo[axis]) };
         for lane in 0..WIDTH {
             let enter = (lo[lane] - o) * inverse;
             let leave = (hi[lane] - o) * inverse;
@@ -555,8 +520,7 @@ fn meet(pack: &Pack, ray: &Prepared) -> ([f64; LANES], [f64; LANES], [f64; LANES
         let determinant = u + v + w;
         let inverse = 1.0 / determinant;
         let t = (u * z[0][lane] + v * z[1][lane] + w * z[2][lane]) * inverse;
-        let inside =
-            ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0));
+        let inside = ((u >= 0.0) & (v >= 0.0) & (w >= 0.0)) | ((u <= 0.0) & (v <= 0.0) & (w <= 0.0));
         distance[lane] = t;
         second[lane] = v * inverse;
         third[lane] = w * inverse;
@@ -580,16 +544,11 @@ mod tests {
     use super::*;
 
     fn lambert() -> Vec<Material> {
-        vec![Material {
-            name: "grey".into(),
-            bsdf: Bsdf::Lambert { reflectance: 0.5 },
-        }]
+        vec![Material { name: "grey".into(), bsdf: Bsdf::Lambert { reflectance: 0.5 } }]
     }
 
     fn random(state: &mut u64) -> f64 {
-        *state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -614,8 +573,7 @@ mod tests {
                 for j in 0..cells as u32 {
                     let a = first + i * n + j;
                     for vertices in [[a, a + n, a + n + 1], [a, a + n + 1, a + 1]] {
-                        mesh.triangles
-                            .push(super::super::mesh::Triangle { vertices, surface });
+                        mesh.triangles.push(super::super::mesh::Triangle { vertices, surface });
                     }
                 }
             }
@@ -635,18 +593,12 @@ mod tests {
                 for (p, q) in [(a, b), (b, c), (c, a), (a, a)] {
                     for _ in 0..20 {
                         let target = p.lerp(q, random(&mut state));
-                        missed += i32::from(
-                            tracer
-                                .closest(centre, (target - centre).normalize(), &[])
-                                .is_none(),
-                        );
+                        missed +=
+                            i32::from(tracer.closest(centre, (target - centre).normalize(), &[]).is_none());
                     }
                 }
             }
-            assert_eq!(
-                missed, 0,
-                "rays aimed at edges and vertices must not leak, shift {shift}"
-            );
+            assert_eq!(missed, 0, "rays aimed at edges and vertices must not leak, shift {shift}");
         }
     }
 
@@ -660,24 +612,15 @@ mod tests {
             let [a, b, c] = mesh.corners(index);
             for _ in 0..200 {
                 let (u, v) = (random(&mut state), random(&mut state));
-                let (u, v) = if u + v > 1.0 {
-                    (1.0 - u, 1.0 - v)
-                } else {
-                    (u, v)
-                };
-                let inward = tracer.normal(index as u32)
-                    * (centre - a).dot(tracer.normal(index as u32)).signum();
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let inward =
+                    tracer.normal(index as u32) * (centre - a).dot(tracer.normal(index as u32)).signum();
                 let origin = a + (b - a) * u + (c - a) * v + inward * tracer.offset_m();
-                let direction = DVec3::new(
-                    random(&mut state) - 0.5,
-                    random(&mut state) - 0.5,
-                    random(&mut state) - 0.5,
-                )
-                .normalize();
+                let direction =
+                    DVec3::new(random(&mut state) - 0.5, random(&mut state) - 0.5, random(&mut state) - 0.5)
+                        .normalize();
                 let direction = direction * direction.dot(inward).signum();
-                let hit = tracer
-                    .closest(origin, direction, &[])
-                    .expect("a closed box");
+                let hit = tracer.closest(origin, direction, &[]).expect("a closed box");
                 assert_ne!(hit.triangle as usize, index);
             }
         }
@@ -692,12 +635,9 @@ mod tests {
         for _ in 0..3000 {
             let corner = point();
             let first = mesh.positions.len() as u32;
-            mesh.positions
-                .extend([corner, corner + 0.1 * point(), corner + 0.1 * point()]);
-            mesh.triangles.push(super::super::mesh::Triangle {
-                vertices: [first, first + 1, first + 2],
-                surface,
-            });
+            mesh.positions.extend([corner, corner + 0.1 * point(), corner + 0.1 * point()]);
+            mesh.triangles
+                .push(super::super::mesh::Triangle { vertices: [first, first + 1, first + 2], surface });
         }
         let fast = Tracer::build_with(&mesh, &lambert(), Simd::Detect);
         let plain = Tracer::build_with(&mesh, &lambert(), Simd::Off);
@@ -714,15 +654,9 @@ mod tests {
                     ok[0].then_some(t[0])
                 })
                 .fold(f64::INFINITY, f64::min);
-            assert_eq!(
-                hit.map_or(f64::INFINITY, |h| h.distance_m).to_bits(),
-                nearest.to_bits()
-            );
+            assert_eq!(hit.map_or(f64::INFINITY, |h| h.distance_m).to_bits(), nearest.to_bits());
             let open = fast.transmittance(origin, direction, 0.5, &[]);
-            assert_eq!(
-                open.to_bits(),
-                plain.transmittance(origin, direction, 0.5, &[]).to_bits()
-            );
+            assert_eq!(open.to_bits(), plain.transmittance(origin, direction, 0.5, &[]).to_bits());
             assert_eq!(open < 0.5, nearest < 0.5);
         }
     }

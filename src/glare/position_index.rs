@@ -68,9 +68,7 @@ const TABLE: [&[f64]; 31] = [
 /// The reason why the source is ignored.
 pub fn cie117_table(line_of_sight: DVec3, up: DVec3, direction: DVec3) -> Result<f64, Undefined> {
     let Some([h, r, t]) = view_coordinates(line_of_sight, up, direction) else {
-        return Err(Undefined::because(
-            "the up vector is parallel to the line of sight",
-        ));
+        return Err(Undefined::because("the up vector is parallel to the line of sight"));
     };
     if !(r > 0.0) {
         return Err(Undefined::because("the source is not in front of the eye"));
@@ -93,9 +91,7 @@ pub fn cie117_at(h_over_r: f64, t_over_r: f64) -> Result<f64, Undefined> {
         return Err(Undefined::because("H/R and T/R must not be negative"));
     }
     if t_over_r > T_OVER_R_MAX + LEVEL {
-        return Err(Undefined::because(
-            "the source is too far to the side for the CIE 117 table (T/R > 3)",
-        ));
+        return Err(Undefined::because("the source is too far to the side for the CIE 117 table (T/R > 3)"));
     }
     let (row, row_part) = cell(t_over_r.min(T_OVER_R_MAX), TABLE.len());
     let (column, column_part) = cell(h_over_r, usize::MAX);
@@ -105,7 +101,9 @@ pub fn cie117_at(h_over_r: f64, t_over_r: f64) -> Result<f64, Undefined> {
             let weight = t_weight * h_weight;
             if weight > 0.0 {
                 let value = TABLE[t].get(h).ok_or_else(|| {
-                    Undefined::because("the source is too far above the line of sight for the CIE 117 table (void cell)")
+                    Undefined::because(
+                        "the source is too far above the line of sight for the CIE 117 table (void cell)",
+                    )
                 })?;
                 index += weight * value;
             }
@@ -132,9 +130,7 @@ fn cell(ratio: f64, lines: usize) -> (usize, f64) {
 pub fn levin(sigma_deg: f64, tau_deg: f64) -> f64 {
     let linear = (35.2 - 0.31889 * tau_deg - 1.22 * (-2.0 * tau_deg / 9.0).exp()) * 1e-3;
     let square = (21.0 + 0.26667 * tau_deg - 0.002963 * tau_deg * tau_deg) * 1e-5;
-    (linear * sigma_deg + square * sigma_deg * sigma_deg)
-        .exp()
-        .min(LEVIN_CAP)
+    (linear * sigma_deg + square * sigma_deg * sigma_deg).exp().min(LEVIN_CAP)
 }
 
 /// P for every direction: [`levin`] above the line of sight, Iwata and Osterhaus (2010) below it,
@@ -143,18 +139,12 @@ pub fn levin(sigma_deg: f64, tau_deg: f64) -> f64 {
 /// to the gaze any horizontal axis serves as up: τ has no meaning there.
 pub fn levin_iwata(gaze: DVec3, up: DVec3, direction: DVec3) -> f64 {
     let ups = [up, DVec3::Y, DVec3::X];
-    let Some([h, r, t]) = ups
-        .into_iter()
-        .find_map(|up| view_coordinates(gaze, up, direction))
-    else {
+    let Some([h, r, t]) = ups.into_iter().find_map(|up| view_coordinates(gaze, up, direction)) else {
         // Only a gaze of no length is parallel to both x and y.
         return LEVIN_CAP;
     };
     if h >= 0.0 {
-        levin(
-            h.hypot(t).atan2(r).to_degrees(),
-            t.abs().atan2(h).to_degrees(),
-        )
+        levin(h.hypot(t).atan2(r).to_degrees(), t.abs().atan2(h).to_degrees())
     } else {
         levin((1.15 * h).hypot(t).atan2(r).to_degrees(), 90.0)
     }
@@ -168,11 +158,7 @@ fn view_coordinates(line_of_sight: DVec3, up: DVec3, direction: DVec3) -> Option
         return None;
     }
     let side = side.normalize();
-    Some([
-        direction.dot(side.cross(ahead)),
-        direction.dot(ahead),
-        direction.dot(side),
-    ])
+    Some([direction.dot(side.cross(ahead)), direction.dot(ahead), direction.dot(side)])
 }
 
 #[cfg(test)]
@@ -188,10 +174,7 @@ mod tests {
         };
         let mut cases = 0;
         for line in text.lines().skip(1) {
-            let fields: Vec<f64> = line
-                .split(',')
-                .map(|field| field.parse().unwrap())
-                .collect();
+            let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
             // The cases look along +y, x to the right, z up.
             let direction = DVec3::new(fields[2], fields[3], fields[4]);
             let table = cie117_table(DVec3::Y, DVec3::Z, direction);
@@ -201,10 +184,7 @@ mod tests {
                 assert!((table.unwrap() - fields[9]).abs() < 2e-4, "{line}");
             }
             let formula = levin_iwata(DVec3::Y, DVec3::Z, direction);
-            assert!(
-                (formula - fields[10]).abs() < 2e-4 * fields[10],
-                "{line}: {formula}"
-            );
+            assert!((formula - fields[10]).abs() < 2e-4 * fields[10], "{line}: {formula}");
             cases += 1;
         }
         assert_eq!(cases, 14);
@@ -224,14 +204,7 @@ mod tests {
     #[test]
     fn sources_outside_the_table_are_ignored_not_extrapolated() {
         assert!(cie117_at(1.7, 0.0).is_ok());
-        for (h, t) in [
-            (1.75, 0.0),
-            (1.8, 0.3),
-            (1.85, 0.4),
-            (1.91, 2.0),
-            (2.0, 1.0),
-            (0.0, 3.01),
-        ] {
+        for (h, t) in [(1.75, 0.0), (1.8, 0.3), (1.85, 0.4), (1.91, 2.0), (2.0, 1.0), (0.0, 3.01)] {
             assert!(cie117_at(h, t).is_err(), "H/R {h}, T/R {t}");
         }
         assert!(cie117_table(DVec3::X, DVec3::Z, DVec3::new(-1.0, 0.0, 0.1)).is_err());

@@ -79,9 +79,7 @@ fn index(
         return Err(Undefined::because("no light source is visible"));
     }
     if !(background.0 > 0.0) {
-        return Err(Undefined::because(
-            "the background luminance is not positive",
-        ));
+        return Err(Undefined::because("the background luminance is not positive"));
     }
     Ok(8.0 * (0.25 / background.0 * sum).log10())
 }
@@ -91,11 +89,7 @@ pub fn validity(sources: &[GlareSource]) -> Vec<String> {
     let [smallest, largest] = VALID_SOLID_ANGLE_SR;
     let of_ordinary_size = |source: &&GlareSource| source.projected_area_m2 >= SMALL_SOURCE_M2;
     let count = |is: &dyn Fn(&GlareSource) -> bool| {
-        sources
-            .iter()
-            .filter(of_ordinary_size)
-            .filter(|source| is(source))
-            .count()
+        sources.iter().filter(of_ordinary_size).filter(|source| is(source)).count()
     };
     [
         (
@@ -169,14 +163,9 @@ mod tests {
     #[test]
     fn without_a_source_or_a_background_there_is_no_index() {
         let source = panel(2000.0, 0.01, 2.0);
-        let reason = |sources: &[GlareSource], background| {
-            ugr(sources, Nits(background)).unwrap_err().reason
-        };
+        let reason = |sources: &[GlareSource], background| ugr(sources, Nits(background)).unwrap_err().reason;
         assert_eq!(reason(&[], 20.0), "no light source is visible");
-        assert_eq!(
-            reason(&[panel(0.0, 0.01, 2.0)], 20.0),
-            "no light source is visible"
-        );
+        assert_eq!(reason(&[panel(0.0, 0.01, 2.0)], 20.0), "no light source is visible");
         for background in [0.0, -1.0, f64::NAN] {
             assert!(reason(&[source], background).contains("background"));
         }
@@ -189,9 +178,6 @@ mod tests {
         assert!(validity(&[panel(2000.0, 0.01, 2.0)]).is_empty());
         let notes = validity(&[panel(2000.0, 0.2, 2.0), panel(2000.0, 1e-3, 2.0)]);
         assert_eq!(notes.len(), 2, "{notes:?}");
-        assert!(
-            notes[0].contains("0.1 sr") && notes[1].contains("1.5 m²"),
-            "{notes:?}"
-        );
+        assert!(notes[0].contains("0.1 sr") && notes[1].contains("1.5 m²"), "{notes:?}");
     }
 }

@@ -33,13 +33,8 @@ pub const ROOMS: [(f64, f64); 19] = [
 ];
 
 /// Reflectances of ceiling, walls and floor.
-pub const REFLECTANCES: [[f64; 3]; 5] = [
-    [0.7, 0.5, 0.2],
-    [0.7, 0.3, 0.2],
-    [0.5, 0.5, 0.2],
-    [0.5, 0.3, 0.2],
-    [0.3, 0.3, 0.2],
-];
+pub const REFLECTANCES: [[f64; 3]; 5] =
+    [[0.7, 0.5, 0.2], [0.7, 0.3, 0.2], [0.5, 0.5, 0.2], [0.5, 0.3, 0.2], [0.3, 0.3, 0.2]];
 
 /// Height of the luminaires above the eye, m.
 const H_M: f64 = 2.0;
@@ -151,26 +146,17 @@ pub fn for_room(
 /// # Errors
 /// The reason why not: no flux, indirect, large, or not symmetric about both its axes.
 pub fn applicable(input: &TableInput) -> Result<(), Undefined> {
-    let refuse = |why: String| {
-        Err(Undefined::because(format!(
-            "the UGR table method does not apply: {why}"
-        )))
-    };
+    let refuse = |why: String| Err(Undefined::because(format!("the UGR table method does not apply: {why}")));
     if !(input.flux_lm > 0.0 && input.flux_lm.is_finite()) {
         return refuse("the luminaire has no flux".into());
     }
     let upward = (input.zonal_flux_lm)(90.0, 180.0) / input.flux_lm;
     if !(upward <= UPWARD_SHARE_MAX) {
-        return refuse(format!(
-            "{:.0} % of the flux goes up, the luminaire is indirect",
-            100.0 * upward
-        ));
+        return refuse(format!("{:.0} % of the flux goes up, the luminaire is indirect", 100.0 * upward));
     }
     let area_m2 = (input.projected_area_m2)(DVec3::NEG_Z);
     if area_m2 > LARGE_SOURCE_M2 {
-        return refuse(format!(
-            "the luminous area of {area_m2:.2} m² is larger than {LARGE_SOURCE_M2} m²"
-        ));
+        return refuse(format!("the luminous area of {area_m2:.2} m² is larger than {LARGE_SOURCE_M2} m²"));
     }
     let (mut largest, mut difference) = (0.0f64, 0.0f64);
     for gamma_deg in (5..=85).step_by(5) {
@@ -178,13 +164,9 @@ pub fn applicable(input: &TableInput) -> Result<(), Undefined> {
             let (sin, cos) = f64::from(gamma_deg).to_radians().sin_cos();
             let (sin_a, cos_a) = f64::from(azimuth_deg).to_radians().sin_cos();
             let [low, high] = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
-                .map(|(x, y)| {
-                    (input.intensity_cd)(DVec3::new(x * sin * cos_a, y * sin * sin_a, -cos))
-                })
+                .map(|(x, y)| (input.intensity_cd)(DVec3::new(x * sin * cos_a, y * sin * sin_a, -cos)))
                 .into_iter()
-                .fold([f64::INFINITY, 0.0], |[low, high], cd| {
-                    [low.min(cd), f64::max(high, cd)]
-                });
+                .fold([f64::INFINITY, 0.0], |[low, high], cd| [low.min(cd), f64::max(high, cd)]);
             largest = largest.max(high);
             difference = difference.max(high - low);
         }
@@ -205,20 +187,13 @@ impl UgrTable {
     ///
     /// # Errors
     /// Sizes or reflectances that are no such numbers.
-    pub fn room(
-        &self,
-        x_over_h: f64,
-        y_over_h: f64,
-        reflectances: [f64; 3],
-    ) -> Result<RoomUgr, Undefined> {
+    pub fn room(&self, x_over_h: f64, y_over_h: f64, reflectances: [f64; 3]) -> Result<RoomUgr, Undefined> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         if !positive(x_over_h)
             || !positive(y_over_h)
             || !reflectances.iter().all(|rho| (0.0..=1.0).contains(rho))
         {
-            return Err(Undefined::because(
-                "the room needs positive sizes and reflectances between 0 and 1",
-            ));
+            return Err(Undefined::because("the room needs positive sizes and reflectances between 0 and 1"));
         }
         let mut notes = Vec::new();
         let distance = |set: usize| {
@@ -226,26 +201,16 @@ impl UgrTable {
             pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
         };
         let nearer = |best, set| {
-            if distance(set) < distance(best) {
-                set
-            } else {
-                best
-            }
+            if distance(set) < distance(best) { set } else { best }
         };
         let set = (1..REFLECTANCES.len()).fold(0, nearer);
         let nearest = REFLECTANCES[set];
         if distance(set) > 1e-6 {
-            notes.push(format!(
-                "reflectances {} taken for {}",
-                percent(nearest),
-                percent(reflectances)
-            ));
+            notes.push(format!("reflectances {} taken for {}", percent(nearest), percent(reflectances)));
         }
         let weights = room_weights(x_over_h, y_over_h, &mut notes);
         let value = |rows: &[TableRow; 19]| {
-            weights.iter().try_fold(0.0, |sum, &(room, weight)| {
-                Ok(sum + weight * rows[room][set].clone()?)
-            })
+            weights.iter().try_fold(0.0, |sum, &(room, weight)| Ok(sum + weight * rows[room][set].clone()?))
         };
         Ok(RoomUgr {
             crosswise: value(&self.crosswise),
@@ -258,9 +223,7 @@ impl UgrTable {
 
 /// `70/50/20`.
 fn percent(reflectances: [f64; 3]) -> String {
-    reflectances
-        .map(|rho| format!("{:.0}", 100.0 * rho))
-        .join("/")
+    reflectances.map(|rho| format!("{:.0}", 100.0 * rho)).join("/")
 }
 
 /// Table rooms and their weights for a room between them.
@@ -269,21 +232,15 @@ fn room_weights(x: f64, y: f64, notes: &mut Vec<String>) -> Vec<(usize, f64)> {
     let mut weights = Vec::new();
     let mut moved = !(columns[0]..=columns[3]).contains(&x);
     for (column, x_weight) in between(&columns, x) {
-        let indices: Vec<usize> = (0..ROOMS.len())
-            .filter(|&room| (ROOMS[room].0 - columns[column]).abs() < 1e-9)
-            .collect();
+        let indices: Vec<usize> =
+            (0..ROOMS.len()).filter(|&room| (ROOMS[room].0 - columns[column]).abs() < 1e-9).collect();
         let depths: Vec<f64> = indices.iter().map(|&room| ROOMS[room].1).collect();
         moved |= !(depths[0]..=depths[depths.len() - 1]).contains(&y);
-        weights.extend(
-            between(&depths, y)
-                .into_iter()
-                .map(|(depth, part)| (indices[depth], x_weight * part)),
-        );
+        weights
+            .extend(between(&depths, y).into_iter().map(|(depth, part)| (indices[depth], x_weight * part)));
     }
     if moved {
-        notes.push(format!(
-            "room {x:.1} H × {y:.1} H lies outside the table, nearest rooms taken"
-        ));
+        notes.push(format!("room {x:.1} H × {y:.1} H lies outside the table, nearest rooms taken"));
     }
     weights
 }
@@ -296,11 +253,7 @@ fn between(knots: &[f64], value: f64) -> Vec<(usize, f64)> {
         return vec![(above.min(last), 1.0)];
     }
     let part = (value - knots[above - 1]) / (knots[above] - knots[above - 1]);
-    if part > 0.0 {
-        vec![(above - 1, 1.0 - part), (above, part)]
-    } else {
-        vec![(above - 1, 1.0)]
-    }
+    if part > 0.0 { vec![(above - 1, 1.0 - part), (above, part)] } else { vec![(above - 1, 1.0)] }
 }
 
 /// The five values of one room: the sources are the same, the background differs.
@@ -312,20 +265,12 @@ fn table_row(input: &TableInput, shr: f64, (x, y): (f64, f64), sight: Sight) -> 
     std::array::from_fn(|set| {
         let direct = direct_flux(input.zonal_flux_lm, x, y)?;
         let transfer = transfer_factors(x, y, REFLECTANCES[set]);
-        ugr_by_luminance(
-            &sources,
-            wall_luminance(direct, transfer, rows[0] * rows[1], wall_area_m2),
-        )
+        ugr_by_luminance(&sources, wall_luminance(direct, transfer, rows[0] * rows[1], wall_area_m2))
     })
 }
 
 /// The luminaires at R = S/2, 3S/2 … ahead and T = ±S/2 … aside that the method counts.
-fn visible_sources(
-    input: &TableInput,
-    spacing_m: f64,
-    rows: [usize; 2],
-    sight: Sight,
-) -> Vec<GlareSource> {
+fn visible_sources(input: &TableInput, spacing_m: f64, rows: [usize; 2], sight: Sight) -> Vec<GlareSource> {
     let mut sources = Vec::new();
     for ahead in 0..rows[1] {
         let r_m = (ahead as f64 + 0.5) * spacing_m;

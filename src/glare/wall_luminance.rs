@@ -55,11 +55,7 @@ pub fn opposite_rectangles(x: f64, y: f64) -> f64 {
 
 /// Transfer factors of a box X·H × Y·H × H with diffuse surfaces. Flux balance of three surfaces,
 /// Φ_i = Φ0_i + Σ_j ρ_j Φ_j F_ji, solved for a unit Φ0 on each surface in turn, less the direct part.
-pub fn transfer_factors(
-    x_over_h: f64,
-    y_over_h: f64,
-    [ceiling, walls, floor]: [f64; 3],
-) -> TransferFactors {
+pub fn transfer_factors(x_over_h: f64, y_over_h: f64, [ceiling, walls, floor]: [f64; 3]) -> TransferFactors {
     let across = opposite_rectangles(x_over_h, y_over_h);
     let to_walls = 1.0 - across;
     // Reciprocity with the walls' area 2(X + Y) gives the walls' view of either horizontal surface.
@@ -89,13 +85,9 @@ pub fn direct_flux(
     y_over_h: f64,
 ) -> Result<DirectFlux, Undefined> {
     let room_index = x_over_h * y_over_h / (x_over_h + y_over_h);
-    let (_, multipliers) = GEOMETRIC_MULTIPLIERS
-        .iter()
-        .find(|(k, _)| (k - room_index).abs() < 0.006)
-        .ok_or_else(|| {
-            Undefined::because(format!(
-                "CIE 190 has no multipliers for the room index {room_index:.2}"
-            ))
+    let (_, multipliers) =
+        GEOMETRIC_MULTIPLIERS.iter().find(|(k, _)| (k - room_index).abs() < 0.006).ok_or_else(|| {
+            Undefined::because(format!("CIE 190 has no multipliers for the room index {room_index:.2}"))
         })?;
     let down_lm = zonal_flux_lm(0.0, 90.0);
     let zones = [
@@ -104,16 +96,8 @@ pub fn direct_flux(
         zonal_flux_lm(0.0, 70.0) + 0.547 * zonal_flux_lm(70.0, 80.0),
         down_lm,
     ];
-    let floor_lm: f64 = multipliers
-        .iter()
-        .zip(zones)
-        .map(|(multiplier, zone_lm)| multiplier * zone_lm)
-        .sum();
-    Ok(DirectFlux {
-        floor_lm,
-        walls_lm: down_lm - floor_lm,
-        ceiling_lm: zonal_flux_lm(90.0, 180.0),
-    })
+    let floor_lm: f64 = multipliers.iter().zip(zones).map(|(multiplier, zone_lm)| multiplier * zone_lm).sum();
+    Ok(DirectFlux { floor_lm, walls_lm: down_lm - floor_lm, ceiling_lm: zonal_flux_lm(90.0, 180.0) })
 }
 
 /// L_b = N/(π A_w) · (Φ_F F_FW + Φ_W F_WW + Φ_C F_CW) of `luminaires` in a room X·H × Y·H of height
@@ -163,15 +147,12 @@ mod tests {
         };
         let data: serde_json::Value = serde_json::from_str(&text).unwrap();
         let (mut within, mut worst) = (0, 0.0f64);
-        for (set, name) in ["70/50/20", "70/30/20", "50/50/20", "50/30/20", "30/30/20"]
-            .into_iter()
-            .enumerate()
+        for (set, name) in
+            ["70/50/20", "70/30/20", "50/50/20", "50/30/20", "30/30/20"].into_iter().enumerate()
         {
             for (room, (x, y)) in ROOMS.into_iter().enumerate() {
                 let factors = transfer_factors(x, y, REFLECTANCES[set]);
-                for (column, value) in [factors.floor, factors.walls, factors.ceiling]
-                    .into_iter()
-                    .enumerate()
+                for (column, value) in [factors.floor, factors.walls, factors.ceiling].into_iter().enumerate()
                 {
                     let error = (value - data["F_T"][name][room][column].as_f64().unwrap()).abs();
                     within += u32::from(error < 0.0011);

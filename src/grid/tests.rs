@@ -3,15 +3,7 @@
 use super::*;
 
 fn floor(x: f64, y: f64, rule: GridRule, border_m: f64) -> Result<Grid, GridError> {
-    rectangle(
-        DVec3::ZERO,
-        DVec3::X * x,
-        DVec3::Y * y,
-        DVec3::Z,
-        rule,
-        border_m,
-        None,
-    )
+    rectangle(DVec3::ZERO, DVec3::X * x, DVec3::Y * y, DVec3::Z, rule, border_m, None)
 }
 
 #[test]
@@ -25,14 +17,8 @@ fn the_spacing_follows_the_rule() {
         (40.0, 10.0, 1.0),
         (20.0, 10.0, 1.0),
     ] {
-        assert!(
-            (spacing_m(longer, shorter) - expected).abs() < 1e-9,
-            "{longer} × {shorter}"
-        );
-        assert!(
-            (spacing_m(shorter, longer) - expected).abs() < 1e-9,
-            "sides swapped"
-        );
+        assert!((spacing_m(longer, shorter) - expected).abs() < 1e-9, "{longer} × {shorter}");
+        assert!((spacing_m(shorter, longer) - expected).abs() < 1e-9, "sides swapped");
     }
     // 19.9 × 10 is not yet long: d is the longer side.
     assert!(spacing_m(19.9, 10.0) > 1.5);
@@ -44,10 +30,7 @@ fn from_a_shelf_to_a_hall_points_suffice_and_cells_stay_square_enough() {
         for y in [0.4, 0.7, 1.0, 1.6, 3.0, 5.5, 8.0, 19.9, 20.0, 50.0, 100.0] {
             let grid = floor(x, y, GridRule::En, 0.0).unwrap();
             let p = spacing_m(x, y);
-            assert!(
-                grid.columns as f64 * p >= x - 1e-6 && grid.rows as f64 * p >= y - 1e-6,
-                "{x} × {y}"
-            );
+            assert!(grid.columns as f64 * p >= x - 1e-6 && grid.rows as f64 * p >= y - 1e-6, "{x} × {y}");
             let aspect = grid.spacing_m[0] / grid.spacing_m[1];
             assert!((0.5..=2.0).contains(&aspect), "{x} × {y}: {aspect}");
             assert_eq!(grid.points.len(), grid.columns * grid.rows);
@@ -71,61 +54,26 @@ fn points_are_cell_centres_in_order_of_rows_inside_the_border() {
 fn what_gives_no_grid_says_why() {
     assert_eq!(
         floor(5.0, 1.0, GridRule::En, 0.5).unwrap_err(),
-        GridError::Border {
-            border_m: 0.5,
-            side_m: 1.0
-        }
+        GridError::Border { border_m: 0.5, side_m: 1.0 }
     );
-    assert!(matches!(
-        floor(5.0, 3.0, GridRule::En, f64::NAN),
-        Err(GridError::Border { .. })
-    ));
-    assert!(matches!(
-        floor(0.0, 3.0, GridRule::En, 0.0),
-        Err(GridError::NoExtent { .. })
-    ));
-    for rule in [
-        GridRule::Step(0.0),
-        GridRule::Step(f64::NAN),
-        GridRule::Count([0, 3]),
-    ] {
+    assert!(matches!(floor(5.0, 3.0, GridRule::En, f64::NAN), Err(GridError::Border { .. })));
+    assert!(matches!(floor(0.0, 3.0, GridRule::En, 0.0), Err(GridError::NoExtent { .. })));
+    for rule in [GridRule::Step(0.0), GridRule::Step(f64::NAN), GridRule::Count([0, 3])] {
         assert_eq!(floor(5.0, 3.0, rule, 0.0).unwrap_err(), GridError::Rule);
     }
-    for rule in [
-        GridRule::Step(1e-4),
-        GridRule::Step(1e-300),
-        GridRule::Count([usize::MAX, 2]),
-    ] {
-        assert!(matches!(
-            floor(5.0, 3.0, rule, 0.0),
-            Err(GridError::TooMany { .. })
-        ));
+    for rule in [GridRule::Step(1e-4), GridRule::Step(1e-300), GridRule::Count([usize::MAX, 2])] {
+        assert!(matches!(floor(5.0, 3.0, rule, 0.0), Err(GridError::TooMany { .. })));
     }
-    let skewed = rectangle(
-        DVec3::ZERO,
-        DVec3::X,
-        DVec3::new(1.0, 1.0, 0.0),
-        DVec3::Z,
-        GridRule::En,
-        0.0,
-        None,
-    );
+    let skewed =
+        rectangle(DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Z, GridRule::En, 0.0, None);
     assert!(skewed.unwrap_err().to_string().contains("45.0°"));
 }
 
 #[test]
 fn a_grid_in_step_with_the_luminaires_gets_one_more_point() {
     let along = |avoid| {
-        let grid = rectangle(
-            DVec3::ZERO,
-            DVec3::X * 8.0,
-            DVec3::Y * 5.0,
-            DVec3::Z,
-            GridRule::En,
-            0.0,
-            avoid,
-        )
-        .unwrap();
+        let grid = rectangle(DVec3::ZERO, DVec3::X * 8.0, DVec3::Y * 5.0, DVec3::Z, GridRule::En, 0.0, avoid)
+            .unwrap();
         [grid.columns, grid.rows]
     };
     assert_eq!(along(Some([0.8, 2.0])), [11, 6]);
@@ -139,33 +87,16 @@ fn a_rectangular_polygon_is_the_rectangle_and_an_l_loses_its_notch() {
     let at = |x: f64, y: f64| DVec3::new(x, y, 0.8);
     let square = [at(0.0, 0.0), at(8.0, 0.0), at(8.0, 5.0), at(0.0, 5.0)];
     let grid = polygon(&square, DVec3::Z, GridRule::En, 0.5).unwrap();
-    let twin = rectangle(
-        square[0],
-        DVec3::X * 8.0,
-        DVec3::Y * 5.0,
-        DVec3::Z,
-        GridRule::En,
-        0.5,
-        None,
-    )
-    .unwrap();
+    let twin =
+        rectangle(square[0], DVec3::X * 8.0, DVec3::Y * 5.0, DVec3::Z, GridRule::En, 0.5, None).unwrap();
     assert!(grid.points.iter().all(|point| point.excluded.is_none()));
     for (a, b) in grid.points.iter().zip(&twin.points) {
         assert!((a.position - b.position).length() < 1e-12);
     }
-    let l = [
-        at(0.0, 0.0),
-        at(8.0, 0.0),
-        at(8.0, 2.0),
-        at(4.0, 2.0),
-        at(4.0, 5.0),
-        at(0.0, 5.0),
-    ];
-    for (outline, normal) in [
-        (l.to_vec(), DVec3::Z),
-        (l.iter().rev().copied().collect(), DVec3::Z),
-        (l.to_vec(), DVec3::NEG_Z),
-    ] {
+    let l = [at(0.0, 0.0), at(8.0, 0.0), at(8.0, 2.0), at(4.0, 2.0), at(4.0, 5.0), at(0.0, 5.0)];
+    for (outline, normal) in
+        [(l.to_vec(), DVec3::Z), (l.iter().rev().copied().collect(), DVec3::Z), (l.to_vec(), DVec3::NEG_Z)]
+    {
         let grid = polygon(&outline, normal, GridRule::Step(0.5), 0.3).unwrap();
         for point in &grid.points {
             let (x, y) = (point.position.x, point.position.y);
@@ -183,30 +114,16 @@ fn polygons_that_are_none_are_refused() {
     let bow = [at(0.0, 0.0), at(4.0, 3.0), at(4.0, 0.0), at(0.0, 4.0)];
     assert_eq!(
         polygon(&bow, DVec3::Z, GridRule::En, 0.0).unwrap_err(),
-        GridError::SelfIntersecting {
-            first: 1,
-            second: 3
-        }
+        GridError::SelfIntersecting { first: 1, second: 3 }
     );
-    let bent = [
-        at(0.0, 0.0),
-        at(4.0, 0.0),
-        DVec3::new(4.0, 3.0, 0.2),
-        at(0.0, 3.0),
-    ];
-    assert!(matches!(
-        polygon(&bent, DVec3::Z, GridRule::En, 0.0),
-        Err(GridError::NotPlanar { .. })
-    ));
+    let bent = [at(0.0, 0.0), at(4.0, 0.0), DVec3::new(4.0, 3.0, 0.2), at(0.0, 3.0)];
+    assert!(matches!(polygon(&bent, DVec3::Z, GridRule::En, 0.0), Err(GridError::NotPlanar { .. })));
     assert_eq!(
         polygon(&bow[..2], DVec3::Z, GridRule::En, 0.0).unwrap_err(),
         GridError::Corners { corners: 2 }
     );
     let line = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0)];
-    assert!(matches!(
-        polygon(&line, DVec3::Z, GridRule::En, 0.0),
-        Err(GridError::NoExtent { .. })
-    ));
+    assert!(matches!(polygon(&line, DVec3::Z, GridRule::En, 0.0), Err(GridError::NoExtent { .. })));
     // The largest circle inside has a radius of 1.17.
     let sliver = [at(0.0, 0.0), at(4.0, 0.0), at(0.0, 4.0)];
     assert_eq!(
@@ -217,14 +134,8 @@ fn polygons_that_are_none_are_refused() {
 
 #[test]
 fn a_list_keeps_order_and_normals() {
-    let grid = list(
-        &[
-            (DVec3::X, None),
-            (DVec3::Y, Some(DVec3::Y * 2.0)),
-            (DVec3::Z, Some(DVec3::ZERO)),
-        ],
-        DVec3::Z,
-    );
+    let grid =
+        list(&[(DVec3::X, None), (DVec3::Y, Some(DVec3::Y * 2.0)), (DVec3::Z, Some(DVec3::ZERO))], DVec3::Z);
     assert_eq!([grid.columns, grid.rows], [0, 0]);
     let normals: Vec<DVec3> = grid.points.iter().map(|point| point.normal).collect();
     assert_eq!(normals, [DVec3::Z, DVec3::Y, DVec3::Z]);

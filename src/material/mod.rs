@@ -66,10 +66,7 @@ impl Bsdf {
             Self::Lambert { reflectance }
             | Self::Mirror { reflectance }
             | Self::Emitter { reflectance, .. } => reflectance < 1.0,
-            Self::Opal {
-                reflectance,
-                transmittance,
-            } => reflectance + transmittance < 1.0,
+            Self::Opal { reflectance, transmittance } => reflectance + transmittance < 1.0,
             Self::Glass(pane) => pane.absorbs(),
         }
     }
@@ -78,10 +75,7 @@ impl Bsdf {
     pub fn diffuse(&self) -> (f64, f64) {
         match *self {
             Self::Lambert { reflectance } | Self::Emitter { reflectance, .. } => (reflectance, 0.0),
-            Self::Opal {
-                reflectance,
-                transmittance,
-            } => (reflectance, transmittance),
+            Self::Opal { reflectance, transmittance } => (reflectance, transmittance),
             Self::Mirror { .. } | Self::Glass(_) => (0.0, 0.0),
         }
     }
@@ -98,9 +92,7 @@ impl Bsdf {
     /// Emitted luminance, cd/m².
     pub fn emitted(&self) -> f64 {
         match *self {
-            Self::Emitter {
-                luminance_cd_m2, ..
-            } => luminance_cd_m2,
+            Self::Emitter { luminance_cd_m2, .. } => luminance_cd_m2,
             _ => 0.0,
         }
     }
@@ -108,11 +100,7 @@ impl Bsdf {
     /// f(wi, wo) in 1/sr in the local frame, delta lobes excluded; wo.z > 0.
     pub fn f(&self, wi: DVec3, _wo: DVec3) -> f64 {
         let (reflectance, transmittance) = self.diffuse();
-        if wi.z > 0.0 {
-            reflectance * FRAC_1_PI
-        } else {
-            transmittance * FRAC_1_PI
-        }
+        if wi.z > 0.0 { reflectance * FRAC_1_PI } else { transmittance * FRAC_1_PI }
     }
 
     /// Density in 1/sr with which [`Bsdf::sample`] draws `wi`; 0 for delta lobes.
@@ -122,11 +110,7 @@ impl Bsdf {
         if !(total > 0.0) {
             return 0.0;
         }
-        let share = if wi.z > 0.0 {
-            reflectance
-        } else {
-            transmittance
-        } / total;
+        let share = if wi.z > 0.0 { reflectance } else { transmittance } / total;
         share * wi.z.abs() * FRAC_1_PI
     }
 
@@ -138,16 +122,8 @@ impl Bsdf {
                 return None;
             }
             let reflect = u[0] * total < reflected;
-            let direction = if reflect {
-                DVec3::new(-wo.x, -wo.y, wo.z)
-            } else {
-                -wo
-            };
-            return Some(Sampled {
-                direction,
-                weight: total,
-                specular: true,
-            });
+            let direction = if reflect { DVec3::new(-wo.x, -wo.y, wo.z) } else { -wo };
+            return Some(Sampled { direction, weight: total, specular: true });
         }
         let (reflectance, transmittance) = self.diffuse();
         let total = reflectance + transmittance;
@@ -158,11 +134,7 @@ impl Bsdf {
         if u[0] * total >= reflectance {
             direction.z = -direction.z;
         }
-        Some(Sampled {
-            direction,
-            weight: total,
-            specular: false,
-        })
+        Some(Sampled { direction, weight: total, specular: false })
     }
 
     /// Directional-hemispherical reflectance plus transmittance at |cos| of incidence.
@@ -177,16 +149,10 @@ impl Bsdf {
 #[cfg(test)]
 const EXAMPLES: [Bsdf; 6] = [
     Bsdf::Lambert { reflectance: 0.7 },
-    Bsdf::Opal {
-        reflectance: 0.4,
-        transmittance: 0.5,
-    },
+    Bsdf::Opal { reflectance: 0.4, transmittance: 0.5 },
     Bsdf::Mirror { reflectance: 0.9 },
     Bsdf::Glass(Pane::CLEAR),
-    Bsdf::Emitter {
-        luminance_cd_m2: 100.0,
-        reflectance: 0.3,
-    },
+    Bsdf::Emitter { luminance_cd_m2: 100.0, reflectance: 0.3 },
     Bsdf::Lambert { reflectance: 0.0 },
 ];
 
@@ -222,17 +188,11 @@ mod tests {
                     }
                 }
                 let (mirrored, passed) = bsdf.specular(cos_o).unwrap_or((0.0, 0.0));
-                assert!(
-                    (energy + mirrored + passed - bsdf.albedo(cos_o)).abs() < 1e-4,
-                    "{bsdf:?}: albedo"
-                );
+                assert!((energy + mirrored + passed - bsdf.albedo(cos_o)).abs() < 1e-4, "{bsdf:?}: albedo");
                 assert!(bsdf.albedo(cos_o) <= 1.0 + 1e-12, "{bsdf:?} gains energy");
                 let (rho, tau) = bsdf.diffuse();
                 let expected = if rho + tau > 0.0 { 1.0 } else { 0.0 };
-                assert!(
-                    (density - expected).abs() < 1e-4,
-                    "{bsdf:?}: pdf integrates to {density}"
-                );
+                assert!((density - expected).abs() < 1e-4, "{bsdf:?}: pdf integrates to {density}");
             }
         }
     }
@@ -255,10 +215,7 @@ mod tests {
             let (rho, tau) = bsdf.diffuse();
             let (mirrored, passed) = bsdf.specular(0.8).unwrap_or((0.0, 0.0));
             let expected = 2.0 / 3.0 * (rho - tau) + 0.8 * (mirrored - passed);
-            assert!(
-                (mean_cos - expected).abs() < 2e-3,
-                "{bsdf:?}: {mean_cos} is not {expected}"
-            );
+            assert!((mean_cos - expected).abs() < 2e-3, "{bsdf:?}: {mean_cos} is not {expected}");
         }
     }
 }

@@ -16,10 +16,7 @@ const SODA_LIME: f64 = 1.52;
 impl Pane {
     /// A pane of soda-lime glass without absorption (normal transmittance 0.9176).
     #[cfg(test)]
-    pub(super) const CLEAR: Self = Self {
-        index: SODA_LIME,
-        internal: 1.0,
-    };
+    pub(super) const CLEAR: Self = Self { index: SODA_LIME, internal: 1.0 };
 
     /// The pane with transmittance `normal_transmittance` (0 … 1) at normal incidence.
     ///
@@ -32,21 +29,11 @@ impl Pane {
         let clearest = (1.0 - r) / (1.0 + r);
         if t > clearest {
             let root = ((1.0 - t) / (1.0 + t)).sqrt();
-            return Self {
-                index: (1.0 + root) / (1.0 - root),
-                internal: 1.0,
-            };
+            return Self { index: (1.0 + root) / (1.0 - root), internal: 1.0 };
         }
         let q = (1.0 - r) * (1.0 - r);
-        let internal = if t > 0.0 {
-            2.0 * t / (q + (q * q + 4.0 * t * t * r * r).sqrt())
-        } else {
-            0.0
-        };
-        Self {
-            index: SODA_LIME,
-            internal,
-        }
+        let internal = if t > 0.0 { 2.0 * t / (q + (q * q + 4.0 * t * t * r * r).sqrt()) } else { 0.0 };
+        Self { index: SODA_LIME, internal }
     }
 
     /// Transmittance at |cos| of incidence, mean of both polarisations.
@@ -105,10 +92,6 @@ mod tests {
         }
         assert!(Pane::CLEAR.transmittance(1e-6) < 1e-4);
         // n = 1.52 at 60°: r_s = 0.18255, r_p = 0.00181 → T = ½ Σ (1−r)/(1+r) = 0.8438.
-        assert!(
-            (Pane::CLEAR.transmittance(0.5) - 0.8438).abs() < 1e-3,
-            "{}",
-            Pane::CLEAR.transmittance(0.5)
-        );
+        assert!((Pane::CLEAR.transmittance(0.5) - 0.8438).abs() < 1e-3, "{}", Pane::CLEAR.transmittance(0.5));
     }
 }

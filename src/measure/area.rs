@@ -45,7 +45,12 @@ pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64]) -> Bl
 }
 
 /// Point values for reports, `None` where the grid point is excluded.
-pub fn points(answers: &Answers, entry: &PlannedQuantity, weights: &[f64], alpha: f64) -> Vec<Option<PointValue>> {
+pub fn points(
+    answers: &Answers,
+    entry: &PlannedQuantity,
+    weights: &[f64],
+    alpha: f64,
+) -> Vec<Option<PointValue>> {
     let blocks = blocks(answers, entry, weights);
     let mut points = vec![None; entry.rows.len()];
     for (index, values) in blocks.index.iter().zip(&blocks.values) {
@@ -85,13 +90,17 @@ pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
         Statistic::Max => extreme(blocks, alpha, -1.0),
         Statistic::U0 => uniformity(blocks, alpha),
         Statistic::Ud => diversity(blocks, alpha),
-        Statistic::Value => Gauged::undefined(Undefined::because("an area has no single value: ask for its mean, min, max, U0 or Ud")),
+        Statistic::Value => Gauged::undefined(Undefined::because(
+            "an area has no single value: ask for its mean, min, max, U0 or Ud",
+        )),
     }
 }
 
 fn mean_blocks(blocks: &Blocks) -> Vec<f64> {
     let count = blocks.values[0].len();
-    (0..count).map(|k| blocks.values.iter().map(|point| point[k]).sum::<f64>() / blocks.values.len() as f64).collect()
+    (0..count)
+        .map(|k| blocks.values.iter().map(|point| point[k]).sum::<f64>() / blocks.values.len() as f64)
+        .collect()
 }
 
 /// Minimum (`sign` = 1) or maximum (`sign` = −1) over the points.

@@ -16,7 +16,8 @@ pub fn balance(
     tasks: Option<&[f64]>,
     alpha: f64,
 ) -> Option<FluxBalance> {
-    let tallies: Vec<&FluxSheet> = answers.sheets.iter().map(|sheet| sheet.flux.as_ref()).collect::<Option<_>>()?;
+    let tallies: Vec<&FluxSheet> =
+        answers.sheets.iter().map(|sheet| sheet.flux.as_ref()).collect::<Option<_>>()?;
     let emitted_lm: f64 = tallies.first()?.emitted.iter().zip(weights).map(|(flux, w)| flux * w).sum();
     let interval = |blocks: Vec<f64>| interval(&blocks, alpha);
     let channels = answers.channels;
@@ -29,7 +30,8 @@ pub fn balance(
     let absorbed: Vec<f64> =
         tallies.iter().map(|tally| (0..surfaces).map(|s| of_surface(tally, s, false)).sum()).collect();
     let escaped: Vec<f64> = tallies.iter().map(|tally| weighted(&tally.escaped)).collect();
-    let rest = absorbed.iter().zip(&escaped).map(|(a, e)| (emitted_lm - a - e) / emitted_lm.max(f64::MIN_POSITIVE));
+    let rest =
+        absorbed.iter().zip(&escaped).map(|(a, e)| (emitted_lm - a - e) / emitted_lm.max(f64::MIN_POSITIVE));
     let residual_share = interval(rest.collect());
     let areas = scene.mesh.surface_areas_m2();
     Some(FluxBalance {
@@ -43,7 +45,8 @@ pub fn balance(
             .map(|blocks| interval(blocks.iter().map(|flux| flux / emitted_lm).collect())),
         surfaces: (0..surfaces)
             .map(|surface| {
-                let incident: Vec<f64> = tallies.iter().map(|tally| of_surface(tally, surface, true)).collect();
+                let incident: Vec<f64> =
+                    tallies.iter().map(|tally| of_surface(tally, surface, true)).collect();
                 let leaving = tallies
                     .iter()
                     .zip(&incident)

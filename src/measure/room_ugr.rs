@@ -72,7 +72,9 @@ fn values(
         .filter(|luminaire| luminaire.kind.name == kind.name)
         .collect();
     if placed.iter().any(|luminaire| luminaire.beam_axis().z > -0.999) {
-        return Err(Undefined::because("table method not applicable: luminaires are not aimed straight down"));
+        return Err(Undefined::because(
+            "table method not applicable: luminaires are not aimed straight down",
+        ));
     }
     if !(kind.opening.area_m2() > 0.0) {
         return Err(Undefined::because("table method not applicable: the luminaire has no luminous area"));
@@ -81,7 +83,9 @@ fn values(
     let heights: Vec<f64> = placed.iter().map(|luminaire| luminaire.position.z - eye_m).collect();
     let height_m = heights.iter().sum::<f64>() / heights.len().max(1) as f64;
     if !(height_m > 0.0) || heights.iter().any(|h| (h - height_m).abs() > 0.05 * height_m) {
-        return Err(Undefined::because("table method not applicable: luminaires hang at different heights or below the eye"));
+        return Err(Undefined::because(
+            "table method not applicable: luminaires hang at different heights or below the eye",
+        ));
     }
     let input = TableInput {
         intensity_cd: &|direction| kind.distribution.intensity_along(direction),
@@ -90,7 +94,8 @@ fn values(
         flux_lm: kind.flux_lm,
     };
     // Length axis of the luminaires in plan: along x, along y, or mixed.
-    let along = |axis: usize| placed.iter().all(|l| l.world_from_luminaire.x_axis.to_array()[axis].abs() > 0.999);
+    let along =
+        |axis: usize| placed.iter().all(|l| l.world_from_luminaire.x_axis.to_array()[axis].abs() > 0.999);
     let reflectances = room.reflectances;
     let mut look = |across: f64, depth: f64| {
         let found = ugr_table::for_room(&input, shr, across / height_m, depth / height_m, reflectances)?;
@@ -123,5 +128,6 @@ fn rectangle(footprint: &[DVec2]) -> Option<DVec2> {
             .map(|(index, a)| a.perp_dot(footprint[(index + 1) % footprint.len()]))
             .sum::<f64>();
     let size = hi - lo;
-    (size.min_element() > 0.0 && (area.abs() - size.x * size.y).abs() < 1e-6 * size.x * size.y).then_some(size)
+    (size.min_element() > 0.0 && (area.abs() - size.x * size.y).abs() < 1e-6 * size.x * size.y)
+        .then_some(size)
 }

@@ -85,7 +85,8 @@ pub fn glare(
         Ok(value) => {
             let relative = (background.se / background.value).hypot(variance_of_sum.sqrt() / total);
             let se = 8.0 / std::f64::consts::LN_10 * relative;
-            let half = if se > 0.0 { quantile(1.0 - 0.5 * alpha, background.n.saturating_sub(1)) * se } else { 0.0 };
+            let half =
+                if se > 0.0 { quantile(1.0 - 0.5 * alpha, background.n.saturating_sub(1)) * se } else { 0.0 };
             Gauged { value: Ok(value), se, lo: value - half, hi: value + half, place: None }
         }
     };

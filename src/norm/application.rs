@@ -129,11 +129,7 @@ pub struct Reflectances {
 impl Default for Application {
     fn default() -> Self {
         fn customary<T>(value: T) -> Fact<T> {
-            Fact {
-                value,
-                verified: Verified::Unverified,
-                source: "not in the file; customary value".into(),
-            }
+            Fact { value, verified: Verified::Unverified, source: "not in the file; customary value".into() }
         }
         Self {
             illuminance_state: customary(State::Maintained),

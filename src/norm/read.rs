@@ -31,16 +31,8 @@ pub struct Mistake {
 impl Kind {
     fn range(self) -> (f64, f64, &'static str) {
         match self {
-            Self::Illuminance => (
-                0.01,
-                200_000.0,
-                "an illuminance lies between 0.01 and 200 000 lx",
-            ),
-            Self::Fraction => (
-                0.001,
-                1.0,
-                "a uniformity or fraction lies between 0.001 and 1",
-            ),
+            Self::Illuminance => (0.01, 200_000.0, "an illuminance lies between 0.01 and 200 000 lx"),
+            Self::Fraction => (0.001, 1.0, "a uniformity or fraction lies between 0.001 and 1"),
             Self::Ugr => (5.0, 40.0, "UGR limits lie between 5 and 40"),
             Self::ColourRendering => (0.0, 100.0, "R_a lies between 0 and 100"),
             Self::Height => (0.0, 100.0, "heights and widths lie between 0 and 100 m"),
@@ -58,39 +50,21 @@ struct Reader<'a> {
 
 /// Reads and checks a standard.
 pub(super) fn standard(text: &str, file: &str) -> Result<Standard, NormError> {
-    let mut reader = Reader {
-        text,
-        file,
-        mistakes: Vec::new(),
-    };
+    let mut reader = Reader { text, file, mistakes: Vec::new() };
     let parsed: StandardText = match toml::from_str(text) {
         Ok(parsed) => parsed,
         Err(error) => {
             let offset = error.span().map_or(0, |span| span.start);
             let what = error.message().trim().replace('\n', ", ");
-            reader.mistake(
-                offset,
-                what,
-                "compare with a bundled standard, `norm show en-12464-1-2021`",
-            );
-            return Err(NormError {
-                mistakes: reader.mistakes,
-            });
+            reader.mistake(offset, what, "compare with a bundled standard, `norm show en-12464-1-2021`");
+            return Err(NormError { mistakes: reader.mistakes });
         }
     };
     if parsed.id.get_ref().trim().is_empty() {
-        reader.mistake(
-            parsed.id.span().start,
-            "the id is empty".into(),
-            "give the standard a short name",
-        );
+        reader.mistake(parsed.id.span().start, "the id is empty".into(), "give the standard a short name");
     }
     if parsed.row.is_empty() {
-        reader.mistake(
-            0,
-            "the standard has no rows".into(),
-            "add a [[row]] with ref and em",
-        );
+        reader.mistake(0, "the standard has no rows".into(), "add a [[row]] with ref and em");
     }
     let application = match parsed.application {
         Some(application) => {
@@ -103,56 +77,25 @@ pub(super) fn standard(text: &str, file: &str) -> Result<Standard, NormError> {
     };
     let mut rows: Vec<Row> = Vec::new();
     for row in parsed.row {
-        if rows
-            .iter()
-            .any(|earlier| earlier.reference == *row.reference.get_ref())
-        {
+        if rows.iter().any(|earlier| earlier.reference == *row.reference.get_ref()) {
             let what = format!("the row {} is there twice", row.reference.get_ref());
             reader.mistake(row.reference.span().start, what, "references must differ");
         }
         rows.push(reader.row(row));
     }
     if reader.mistakes.is_empty() {
-        let StandardText {
-            id,
-            title,
-            edition,
-            note,
-            ..
-        } = StandardText {
-            row: Vec::new(),
-            application: None,
-            ..parsed
-        };
-        Ok(Standard {
-            id: id.into_inner(),
-            title,
-            edition,
-            note,
-            application,
-            rows,
-        })
+        let StandardText { id, title, edition, note, .. } =
+            StandardText { row: Vec::new(), application: None, ..parsed };
+        Ok(Standard { id: id.into_inner(), title, edition, note, application, rows })
     } else {
-        Err(NormError {
-            mistakes: reader.mistakes,
-        })
+        Err(NormError { mistakes: reader.mistakes })
     }
 }
 
 impl Reader<'_> {
     fn mistake(&mut self, offset: usize, what: String, hint: &str) {
-        let line = 1 + self
-            .text
-            .bytes()
-            .take(offset)
-            .filter(|byte| *byte == b'\n')
-            .count();
-        self.mistakes.push(Mistake {
-            file: self.file.into(),
-            line,
-            what,
-            hint: hint.into(),
-        });
+        let line = 1 + self.text.bytes().take(offset).filter(|byte| *byte == b'\n').count();
+        self.mistakes.push(Mistake { file: self.file.into(), line, what, hint: hint.into() });
     }
 
     /// Notes a number outside its range; `!(inside)` stops NaN too.
@@ -168,16 +111,8 @@ impl Reader<'_> {
         let mut numbers = vec![
             ("ugr_shr", rules.ugr_shr.value, Kind::Ratio),
             ("working_plane_m", rules.working_plane_m.value, Kind::Height),
-            (
-                "eye_height_seated_m",
-                rules.eye_height_seated_m.value,
-                Kind::Height,
-            ),
-            (
-                "eye_height_standing_m",
-                rules.eye_height_standing_m.value,
-                Kind::Height,
-            ),
+            ("eye_height_seated_m", rules.eye_height_seated_m.value, Kind::Height),
+            ("eye_height_standing_m", rules.eye_height_standing_m.value, Kind::Height),
             ("border_m", rules.border_m.value, Kind::Height),
         ];
         if let Some(surrounding) = &rules.surrounding {
@@ -185,10 +120,7 @@ impl Reader<'_> {
             numbers.push(("surrounding.u0", surrounding.u0.value, Kind::Fraction));
             let steps = &surrounding.illuminance_lx.value;
             numbers.extend(
-                steps
-                    .iter()
-                    .flatten()
-                    .map(|lx| ("surrounding.illuminance_lx", *lx, Kind::Illuminance)),
+                steps.iter().flatten().map(|lx| ("surrounding.illuminance_lx", *lx, Kind::Illuminance)),
             );
             if !steps.windows(2).all(|pair| pair[0][0] > pair[1][0]) {
                 self.mistake(
@@ -200,11 +132,7 @@ impl Reader<'_> {
         }
         if let Some(background) = &rules.background {
             numbers.push(("background.width_m", background.width_m.value, Kind::Height));
-            numbers.push((
-                "background.fraction",
-                background.fraction.value,
-                Kind::Fraction,
-            ));
+            numbers.push(("background.fraction", background.fraction.value, Kind::Fraction));
             numbers.push(("background.u0", background.u0.value, Kind::Fraction));
         }
         for (name, u0) in [
@@ -222,11 +150,7 @@ impl Reader<'_> {
     fn quantity(&mut self, text: &Spanned<String>) -> Quantity {
         Quantity::parse(text.get_ref()).unwrap_or_else(|| {
             let what = format!("unknown quantity {}", text.get_ref());
-            self.mistake(
-                text.span().start,
-                what,
-                &format!("known are {}", SPELLINGS.join(", ")),
-            );
+            self.mistake(text.span().start, what, &format!("known are {}", SPELLINGS.join(", ")));
             Quantity::Horizontal
         })
     }
@@ -245,23 +169,12 @@ impl Reader<'_> {
             };
             let verified = text.standing(column.name);
             let (zone, quantity, statistic) = (column.zone, column.quantity, column.statistic);
-            limits.push(Limit {
-                zone,
-                quantity,
-                statistic,
-                bound,
-                verified,
-            });
+            limits.push(Limit { zone, quantity, statistic, bound, verified });
             present.push(column.name);
         }
         let modified_lx = text.em_modified.as_ref().map(|value| {
             present.push("em_modified");
-            self.check(
-                value.span().start,
-                "em_modified",
-                *value.get_ref(),
-                Kind::Illuminance,
-            );
+            self.check(value.span().start, "em_modified", *value.get_ref(), Kind::Illuminance);
             (*value.get_ref(), text.standing("em_modified"))
         });
         for column in text.two_sources.iter().chain(&text.one_source) {
@@ -279,20 +192,13 @@ impl Reader<'_> {
             self.mistake(text.reference.span().start, what, hint);
         }
         if let Some(plane) = &text.plane_m {
-            self.check(
-                plane.span().start,
-                "plane_m",
-                *plane.get_ref(),
-                Kind::Height,
-            );
+            self.check(plane.span().start, "plane_m", *plane.get_ref(), Kind::Height);
         }
         Row {
             reference: text.reference.into_inner(),
             area: text.area,
             task: text.task,
-            verified: limits
-                .first()
-                .map_or(Verified::Unverified, |limit| limit.verified),
+            verified: limits.first().map_or(Verified::Unverified, |limit| limit.verified),
             limits,
             modified_lx,
             plane_m: text.plane_m.map(Spanned::into_inner),
@@ -305,11 +211,7 @@ impl Reader<'_> {
         let quantity = self.quantity(&text.quantity);
         let statistic = Statistic::parse(text.statistic.get_ref()).unwrap_or_else(|| {
             let what = format!("unknown statistic {}", text.statistic.get_ref());
-            self.mistake(
-                text.statistic.span().start,
-                what,
-                "known are mean, min, max, U0, Ud, value",
-            );
+            self.mistake(text.statistic.span().start, what, "known are mean, min, max, U0, Ud, value");
             Statistic::Mean
         });
         let (value, bound) = match (&text.min, &text.max) {
@@ -342,13 +244,7 @@ impl Reader<'_> {
         if matches!(statistic, Statistic::U0 | Statistic::Ud) {
             self.check(value.span().start, statistic.key(), number, Kind::Fraction);
         }
-        Limit {
-            zone: text.zone,
-            quantity,
-            statistic,
-            bound,
-            verified: text.verified,
-        }
+        Limit { zone: text.zone, quantity, statistic, bound, verified: text.verified }
     }
 }
 
@@ -365,15 +261,11 @@ mod tests {
         // Catches silently ignored misspellings, the worst a norm file can have.
         let found = mistakes("id = \"house\"\n[[row]]\nref = \"1\"\nemm = 300\n");
         assert_eq!(found[0].line, 4, "{found:?}");
-        assert!(
-            found[0].what.contains("emm") && found[0].what.contains("em_walls"),
-            "{found:?}"
-        );
+        assert!(found[0].what.contains("emm") && found[0].what.contains("em_walls"), "{found:?}");
         let found = mistakes("id = \"house\"\n[[row]]\nref = \"1\"\nem = \"300 lx\"\n");
         assert_eq!(found[0].line, 4, "{found:?}");
-        let found = mistakes(
-            "id = \"house\"\n[application]\nugr_shr = 0.25\n[[row]]\nref = \"1\"\nem = 300\n",
-        );
+        let found =
+            mistakes("id = \"house\"\n[application]\nugr_shr = 0.25\n[[row]]\nref = \"1\"\nem = 300\n");
         assert_eq!(found[0].line, 3, "{found:?}");
         let found = mistakes(
             "id = \"house\"\n[application]\nugr_method = { value = \"guess\" }\n[[row]]\nref = \"1\"\nem = 3\n",
@@ -389,10 +281,7 @@ mod tests {
         let lines: Vec<usize> = found.iter().map(|mistake| mistake.line).collect();
         assert_eq!(lines, [4, 5, 7, 8, 9, 11], "{found:#?}");
         let error = Standard::parse(text, "house.toml").unwrap_err().to_string();
-        assert!(
-            error.starts_with("house.toml:4: em = -300 is out of range; an illuminance"),
-            "{error}"
-        );
+        assert!(error.starts_with("house.toml:4: em = -300 is out of range; an illuminance"), "{error}");
         assert!(mistakes("id = \"\"\n").len() == 2);
     }
 
@@ -402,24 +291,11 @@ mod tests {
         let text = "id = \"house\"\n[[row]]\nref = \"17\"\n\
                     [[row.limit]]\nzone = \"task\"\nquantity = \"E_v@0\"\nstatistic = \"max\"\nmax = 200\n\
                     [[row.limit]]\nzone = \"task\"\nquantity = \"E_h\"\nstatistic = \"min\"\nmin = 300\nverified = \"one-source\"\n";
-        let limits = Standard::parse(text, "house.toml").unwrap().rows[0]
-            .limits
-            .clone();
+        let limits = Standard::parse(text, "house.toml").unwrap().rows[0].limits.clone();
         assert_eq!(limits[0].bound, Bound::Max(200.0));
         assert_eq!(limits[0].quantity, Quantity::Vertical { azimuth_deg: 0.0 });
-        assert_eq!(
-            (limits[1].statistic, limits[1].verified),
-            (Statistic::Min, Verified::OneSource)
-        );
-        let both = text
-            .replace("max = 200", "max = 200\nmin = 100")
-            .replace("\"min\"", "\"least\"");
-        assert_eq!(
-            mistakes(&both)
-                .iter()
-                .map(|mistake| mistake.line)
-                .collect::<Vec<_>>(),
-            [6, 13]
-        );
+        assert_eq!((limits[1].statistic, limits[1].verified), (Statistic::Min, Verified::OneSource));
+        let both = text.replace("max = 200", "max = 200\nmin = 100").replace("\"min\"", "\"least\"");
+        assert_eq!(mistakes(&both).iter().map(|mistake| mistake.line).collect::<Vec<_>>(), [6, 13]);
     }
 }

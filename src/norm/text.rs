@@ -107,27 +107,13 @@ pub(super) struct Filled<'a> {
 impl RowText {
     /// The columns with a value; `own` is the quantity of the row's task.
     pub(super) fn filled(&self, own: Quantity) -> Vec<Filled<'_>> {
-        let values = [
-            &self.em,
-            &self.u0,
-            &self.ugr,
-            &self.ra,
-            &self.em_cylindrical,
-            &self.em_walls,
-            &self.em_ceiling,
-        ];
+        let values =
+            [&self.em, &self.u0, &self.ugr, &self.ra, &self.em_cylindrical, &self.em_walls, &self.em_ceiling];
         let mut filled = Vec::new();
         for ((name, kind, zone, quantity, statistic), value) in COLUMNS.into_iter().zip(values) {
             if let Some(value) = value {
                 let quantity = quantity.unwrap_or(own);
-                filled.push(Filled {
-                    name,
-                    value,
-                    kind,
-                    zone,
-                    quantity,
-                    statistic,
-                });
+                filled.push(Filled { name, value, kind, zone, quantity, statistic });
             }
         }
         filled

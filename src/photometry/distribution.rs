@@ -62,9 +62,7 @@ pub enum DistributionError {
         expected: &'static str,
     },
     /// A negative or non-finite intensity.
-    #[error(
-        "intensity {cd} cd at azimuth {azimuth_deg}°, γ {gamma_deg}° is not a finite number ≥ 0"
-    )]
+    #[error("intensity {cd} cd at azimuth {azimuth_deg}°, γ {gamma_deg}° is not a finite number ≥ 0")]
     Intensity {
         /// The value.
         cd: f64,
@@ -103,22 +101,12 @@ impl IntensityDistribution {
         let (first, last) = ends(&azimuths_deg);
         if first.abs() > 0.0 || (last - 360.0).abs() > 0.0 {
             let expected = "0° to 360°";
-            return Err(DistributionError::Range {
-                axis: "azimuth",
-                from: first,
-                to: last,
-                expected,
-            });
+            return Err(DistributionError::Range { axis: "azimuth", from: first, to: last, expected });
         }
         let (first, last) = ends(&gammas_deg);
         if first < 0.0 || last > 180.0 {
             let expected = "values within 0° to 180°";
-            return Err(DistributionError::Range {
-                axis: "γ",
-                from: first,
-                to: last,
-                expected,
-            });
+            return Err(DistributionError::Range { axis: "γ", from: first, to: last, expected });
         }
         check_size("planes of intensities", azimuths_deg.len(), cd.len())?;
         for (plane, azimuth) in cd.iter().zip(&azimuths_deg) {
@@ -133,12 +121,9 @@ impl IntensityDistribution {
                 }
             }
         }
-        let unclosed =
-            (0..gammas_deg.len()).find(|i| (cd[0][*i] - cd[cd.len() - 1][*i]).abs() > 0.0);
+        let unclosed = (0..gammas_deg.len()).find(|i| (cd[0][*i] - cd[cd.len() - 1][*i]).abs() > 0.0);
         if let Some(i) = unclosed {
-            return Err(DistributionError::NotClosed {
-                gamma_deg: gammas_deg[i],
-            });
+            return Err(DistributionError::NotClosed { gamma_deg: gammas_deg[i] });
         }
         let peak = cd.iter().flatten().copied().fold(0.0, f64::max);
         if peak > MAX_CD {
@@ -147,10 +132,7 @@ impl IntensityDistribution {
         let rotational = cd.iter().all(|plane| *plane == cd[0]);
         let cd = cd.into_iter().flatten().collect();
         let table = Table::new(azimuths_deg, gammas_deg, cd, rotational);
-        Ok(Self {
-            flux: Lumens(table.flux()),
-            shape: Shape::Table(table),
-        })
+        Ok(Self { flux: Lumens(table.flux()), shape: Shape::Table(table) })
     }
 
     /// Flux of an ideal plane Lambertian emitter; `None` for any other distribution.
@@ -160,18 +142,12 @@ impl IntensityDistribution {
 
     /// A plane Lambertian emitter facing γ = 0: I = Φ/π · cosγ below the horizon, exact.
     pub fn lambert(flux: Lumens) -> Self {
-        Self {
-            shape: Shape::Lambert,
-            flux,
-        }
+        Self { shape: Shape::Lambert, flux }
     }
 
     /// The same intensity in every direction: I = Φ/4π, exact.
     pub fn isotropic(flux: Lumens) -> Self {
-        Self {
-            shape: Shape::Isotropic,
-            flux,
-        }
+        Self { shape: Shape::Isotropic, flux }
     }
 
     /// I in cd along a unit direction of the luminaire frame (γ = 0 is −z, azimuth from +x to +y).
@@ -182,11 +158,7 @@ impl IntensityDistribution {
             Shape::Isotropic => self.flux.0 / (4.0 * PI),
             Shape::Table(table) => {
                 let gamma_deg = (-direction.z).clamp(-1.0, 1.0).acos().to_degrees();
-                let azimuth_deg = if table.rotational {
-                    0.0
-                } else {
-                    azimuth_deg(direction)
-                };
+                let azimuth_deg = if table.rotational { 0.0 } else { azimuth_deg(direction) };
                 table.interpolate(azimuth_deg, gamma_deg)
             }
         }
@@ -209,10 +181,7 @@ impl IntensityDistribution {
 
     /// The flux between two cones about γ = 0, exact as well; 0 if the range is empty.
     pub fn zonal_flux(&self, from_gamma_deg: f64, to_gamma_deg: f64) -> Lumens {
-        let (from, to) = (
-            from_gamma_deg.clamp(0.0, 180.0),
-            to_gamma_deg.clamp(0.0, 180.0),
-        );
+        let (from, to) = (from_gamma_deg.clamp(0.0, 180.0), to_gamma_deg.clamp(0.0, 180.0));
         if !(to > from) {
             return Lumens(0.0);
         }
@@ -221,9 +190,7 @@ impl IntensityDistribution {
                 let sin2 = |gamma_deg: f64| gamma_deg.to_radians().min(FRAC_PI_2).sin().powi(2);
                 self.flux * (sin2(to) - sin2(from))
             }
-            Shape::Isotropic => {
-                self.flux * (0.5 * (from.to_radians().cos() - to.to_radians().cos()))
-            }
+            Shape::Isotropic => self.flux * (0.5 * (from.to_radians().cos() - to.to_radians().cos())),
             Shape::Table(table) => Lumens(table.zonal_flux(from, to)),
         }
     }
@@ -234,10 +201,7 @@ impl IntensityDistribution {
     /// When the factor is negative or not finite: dimming and flux ratios are checked on input.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        assert!(
-            factor.is_finite() && factor >= 0.0,
-            "intensities are scaled by a finite factor ≥ 0"
-        );
+        assert!(factor.is_finite() && factor >= 0.0, "intensities are scaled by a finite factor ≥ 0");
         let mut scaled = self.clone();
         scaled.flux = self.flux * factor;
         if let Shape::Table(table) = &mut scaled.shape {
@@ -302,41 +266,19 @@ fn direction(azimuth_rad: f64, gamma_rad: f64) -> DVec3 {
 
 fn azimuth_deg(direction: DVec3) -> f64 {
     let azimuth = direction.y.atan2(direction.x).to_degrees();
-    if azimuth < 0.0 {
-        azimuth + 360.0
-    } else {
-        azimuth
-    }
+    if azimuth < 0.0 { azimuth + 360.0 } else { azimuth }
 }
 
 fn check_axis(axis: &'static str, values: &[f64]) -> Result<(), DistributionError> {
     if values.len() < 2 {
-        return Err(DistributionError::Size {
-            what: axis,
-            expected: 2,
-            found: values.len(),
-        });
+        return Err(DistributionError::Size { what: axis, expected: 2, found: values.len() });
     }
     let falling = values.windows(2).find(|pair| !(pair[1] > pair[0]));
-    falling.map_or(Ok(()), |pair| {
-        Err(DistributionError::Order {
-            axis,
-            previous: pair[0],
-            next: pair[1],
-        })
-    })
+    falling.map_or(Ok(()), |pair| Err(DistributionError::Order { axis, previous: pair[0], next: pair[1] }))
 }
 
 fn check_size(what: &'static str, expected: usize, found: usize) -> Result<(), DistributionError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(DistributionError::Size {
-            what,
-            expected,
-            found,
-        })
-    }
+    if expected == found { Ok(()) } else { Err(DistributionError::Size { what, expected, found }) }
 }
 
 #[cfg(test)]
@@ -348,15 +290,9 @@ mod tests {
         let azimuths = vec![0.0, 30.0, 100.0, 200.0, 360.0];
         let gammas = vec![5.0, 20.0, 50.0, 90.0, 100.0, 170.0];
         let value = |j: usize, i: usize| {
-            if i == 3 {
-                0.0
-            } else {
-                100.0 + 40.0 * (j % 4) as f64 - 12.0 * i as f64
-            }
+            if i == 3 { 0.0 } else { 100.0 + 40.0 * (j % 4) as f64 - 12.0 * i as f64 }
         };
-        let cd = (0..5)
-            .map(|j| (0..6).map(|i| value(j, i)).collect())
-            .collect();
+        let cd = (0..5).map(|j| (0..6).map(|i| value(j, i)).collect()).collect();
         IntensityDistribution::from_grid(azimuths, gammas, cd).expect("valid grid")
     }
 
@@ -371,9 +307,7 @@ mod tests {
         let n_gamma = ((to_deg - from_deg) / step).round() as i32;
         let ring = |i: i32| -> f64 {
             let gamma = from_deg + step * (f64::from(i) + 0.5);
-            let sum: f64 = (0..n_azimuth)
-                .map(|j| d.intensity_at(f64::from(j) + 0.5, gamma))
-                .sum();
+            let sum: f64 = (0..n_azimuth).map(|j| d.intensity_at(f64::from(j) + 0.5, gamma)).sum();
             sum * TAU / f64::from(n_azimuth) * gamma.to_radians().sin() * step.to_radians()
         };
         (0..n_gamma).map(ring).sum()
@@ -386,27 +320,18 @@ mod tests {
         close(d.flux().0, quadrature(&d, 0.0, 180.0), 1e-6);
         close(d.zonal_flux(33.0, 97.0).0, quadrature(&d, 33.0, 97.0), 1e-6);
         close(d.zonal_flux(0.0, 180.0).0, d.flux().0, 1e-13);
-        close(
-            d.zonal_flux(0.0, 61.0).0 + d.zonal_flux(61.0, 180.0).0,
-            d.flux().0,
-            1e-13,
-        );
+        close(d.zonal_flux(0.0, 61.0).0 + d.zonal_flux(61.0, 180.0).0, d.flux().0, 1e-13);
     }
 
     /// Catches: a wrong constant (2π for π) or a table behind the analytic shapes.
     #[test]
     fn analytic_shapes_have_their_flux() {
-        for d in [
-            IntensityDistribution::lambert(Lumens(1000.0)),
-            IntensityDistribution::isotropic(Lumens(1000.0)),
-        ] {
+        for d in
+            [IntensityDistribution::lambert(Lumens(1000.0)), IntensityDistribution::isotropic(Lumens(1000.0))]
+        {
             close(quadrature(&d, 0.0, 180.0), 1000.0, 1e-6);
             close(quadrature(&d, 0.0, 40.0), d.zonal_flux(0.0, 40.0).0, 1e-6);
-            close(
-                d.scaled(2.0).max_intensity().0,
-                2.0 * d.max_intensity().0,
-                1e-15,
-            );
+            close(d.scaled(2.0).max_intensity().0, 2.0 * d.max_intensity().0, 1e-15);
         }
         let lambert = IntensityDistribution::lambert(Lumens(PI));
         close(lambert.intensity_along(DVec3::NEG_Z), 1.0, 1e-15);
@@ -417,13 +342,7 @@ mod tests {
     #[test]
     fn look_up_by_direction_agrees_with_angles() {
         let d = uneven();
-        for (azimuth, gamma) in [
-            (0.0, 20.0),
-            (30.0, 50.0),
-            (77.0, 33.0),
-            (290.0, 95.0),
-            (359.9, 169.0),
-        ] {
+        for (azimuth, gamma) in [(0.0, 20.0), (30.0, 50.0), (77.0, 33.0), (290.0, 95.0), (359.9, 169.0)] {
             let w = direction(f64::to_radians(azimuth), f64::to_radians(gamma));
             close(d.intensity_along(w), d.intensity_at(azimuth, gamma), 1e-9);
         }
@@ -434,15 +353,11 @@ mod tests {
             1e-12,
         );
         close(d.intensity_at(30.0 - 720.0, 20.0), 128.0, 1e-12);
-        assert!(
-            d.intensity_at(30.0, 4.9).abs() < 1e-300 && d.intensity_at(30.0, 171.0).abs() < 1e-300
-        );
+        assert!(d.intensity_at(30.0, 4.9).abs() < 1e-300 && d.intensity_at(30.0, 171.0).abs() < 1e-300);
     }
 
     fn lcg(state: &mut u64) -> f64 {
-        *state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -487,31 +402,16 @@ mod tests {
             let w = d.sample_direction(u).0;
             direction(w.y.atan2(w.x), PI * u[0])
         });
-        assert!(
-            uniform_azimuth > 20.0 && no_sine > 20.0,
-            "{uniform_azimuth} {no_sine}"
-        );
-        for shape in [
-            IntensityDistribution::lambert(Lumens(5.0)),
-            IntensityDistribution::isotropic(Lumens(5.0)),
-        ] {
+        assert!(uniform_azimuth > 20.0 && no_sine > 20.0, "{uniform_azimuth} {no_sine}");
+        for shape in
+            [IntensityDistribution::lambert(Lumens(5.0)), IntensityDistribution::isotropic(Lumens(5.0))]
+        {
             let mut seed = 3;
-            let mean_z = (0..20_000).map(|_| {
-                -shape
-                    .sample_direction([lcg(&mut seed), lcg(&mut seed), 0.0])
-                    .0
-                    .z
-            });
+            let mean_z =
+                (0..20_000).map(|_| -shape.sample_direction([lcg(&mut seed), lcg(&mut seed), 0.0]).0.z);
             let mean_z = mean_z.sum::<f64>() / 20_000.0;
-            let truth = if shape.intensity_at(0.0, 180.0) > 0.0 {
-                0.0
-            } else {
-                2.0 / 3.0
-            };
-            assert!(
-                (mean_z - truth).abs() < 5.0 * 0.6 / 20_000_f64.sqrt(),
-                "{mean_z}"
-            );
+            let truth = if shape.intensity_at(0.0, 180.0) > 0.0 { 0.0 } else { 2.0 / 3.0 };
+            assert!((mean_z - truth).abs() < 5.0 * 0.6 / 20_000_f64.sqrt(), "{mean_z}");
         }
     }
 
@@ -521,11 +421,7 @@ mod tests {
         let d = uneven();
         let mut seed = 11;
         for k in 0..5000 {
-            let u = if k == 0 {
-                [0.0; 3]
-            } else {
-                [lcg(&mut seed), lcg(&mut seed), lcg(&mut seed)]
-            };
+            let u = if k == 0 { [0.0; 3] } else { [lcg(&mut seed), lcg(&mut seed), lcg(&mut seed)] };
             let (w, pdf) = d.sample_direction(u);
             assert!(pdf > 0.0 && (w.length() - 1.0).abs() < 1e-12);
             if k > 0 {
@@ -542,8 +438,7 @@ mod tests {
     fn bad_tables_are_refused() {
         let make = |azimuths: &[f64], gammas: &[f64], cd: &[[f64; 2]]| {
             let cd = cd.iter().map(|plane| plane.to_vec()).collect();
-            IntensityDistribution::from_grid(azimuths.to_vec(), gammas.to_vec(), cd)
-                .map(|d| d.flux().0)
+            IntensityDistribution::from_grid(azimuths.to_vec(), gammas.to_vec(), cd).map(|d| d.flux().0)
         };
         let (round, down) = ([0.0, 360.0], [0.0, 90.0]);
         assert!(make(&round, &down, &[[1.0, 0.0]; 2]).is_ok());

@@ -6,10 +6,7 @@ use super::{Finding, Format, Opening, Photometry};
 /// All oddities that show in the finished distribution.
 pub(super) fn check(photometry: &Photometry) -> Vec<Finding> {
     let checks = [flux, luminous_area, nadir, covered_range, horizon, uplight];
-    checks
-        .iter()
-        .filter_map(|check| check(photometry))
-        .collect()
+    checks.iter().filter_map(|check| check(photometry)).collect()
 }
 
 /// EULUMDAT states the flux itself; LM-63 only an upper bound, the flux of the lamps.
@@ -39,12 +36,8 @@ fn luminous_area(photometry: &Photometry) -> Option<Finding> {
 fn nadir(photometry: &Photometry) -> Option<Finding> {
     let (azimuths, gammas) = photometry.distribution.grid()?;
     let first = *gammas.first().filter(|gamma| **gamma <= 0.0)?;
-    let at_nadir = azimuths
-        .iter()
-        .map(|azimuth| photometry.distribution.intensity_at(*azimuth, first));
-    let (low, high) = at_nadir.fold((f64::INFINITY, 0.0_f64), |(low, high), cd| {
-        (low.min(cd), high.max(cd))
-    });
+    let at_nadir = azimuths.iter().map(|azimuth| photometry.distribution.intensity_at(*azimuth, first));
+    let (low, high) = at_nadir.fold((f64::INFINITY, 0.0_f64), |(low, high), cd| (low.min(cd), high.max(cd)));
     let message = format!(
         "γ = 0 is one direction, but its planes say {low:.1} to {high:.1} cd: \
          the illuminance right below is uncertain by as much"
@@ -72,18 +65,15 @@ fn is_flat_area(opening: Opening) -> bool {
 fn horizon(photometry: &Photometry) -> Option<Finding> {
     let distribution = &photometry.distribution;
     let (azimuths, _) = distribution.grid()?;
-    let at_horizon = azimuths
-        .iter()
-        .map(|azimuth| distribution.intensity_at(*azimuth, 90.0))
-        .fold(0.0, f64::max);
+    let at_horizon =
+        azimuths.iter().map(|azimuth| distribution.intensity_at(*azimuth, 90.0)).fold(0.0, f64::max);
     let share = at_horizon / distribution.max_intensity().0;
     let message = format!(
         "{:.1} % of the largest intensity leaves a flat opening edge-on (γ = 90°), where its projected \
          area is 0: luminance and UGR near the horizon are overstated; luminous sides seem to be missing",
         100.0 * share
     );
-    (is_flat_area(photometry.opening) && share > 0.005)
-        .then(|| Finding::new("horizon-light", None, message))
+    (is_flat_area(photometry.opening) && share > 0.005).then(|| Finding::new("horizon-light", None, message))
 }
 
 fn uplight(photometry: &Photometry) -> Option<Finding> {
@@ -94,8 +84,7 @@ fn uplight(photometry: &Photometry) -> Option<Finding> {
          above is undefined, illuminance is not affected",
         100.0 * share
     );
-    (is_flat_area(photometry.opening) && share > 0.005)
-        .then(|| Finding::new("flat-uplight", None, message))
+    (is_flat_area(photometry.opening) && share > 0.005).then(|| Finding::new("flat-uplight", None, message))
 }
 
 #[cfg(test)]
@@ -104,21 +93,13 @@ mod tests {
     use super::*;
 
     fn photometry(plane_0: [f64; 4], plane_180: [f64; 4], gammas: [f64; 4]) -> Photometry {
-        let planes = [plane_0, plane_180, plane_0]
-            .map(|plane| plane.to_vec())
-            .to_vec();
-        let grid =
-            IntensityDistribution::from_grid(vec![0.0, 180.0, 360.0], gammas.to_vec(), planes);
+        let planes = [plane_0, plane_180, plane_0].map(|plane| plane.to_vec()).to_vec();
+        let grid = IntensityDistribution::from_grid(vec![0.0, 180.0, 360.0], gammas.to_vec(), planes);
         Photometry {
-            format: Format::Lm63 {
-                version: Lm63Version::Y2002,
-            },
+            format: Format::Lm63 { version: Lm63Version::Y2002 },
             description: String::new(),
             distribution: grid.expect("valid"),
-            opening: Opening::Disc {
-                diameter_m: 0.2,
-                height_m: 0.0,
-            },
+            opening: Opening::Disc { diameter_m: 0.2, height_m: 0.0 },
             rated_flux_lm: None,
             lamp_flux_lm: None,
             lor: None,
@@ -129,10 +110,7 @@ mod tests {
     }
 
     fn codes(photometry: &Photometry) -> Vec<&'static str> {
-        check(photometry)
-            .iter()
-            .map(|finding| finding.code)
-            .collect()
+        check(photometry).iter().map(|finding| finding.code).collect()
     }
 
     /// Catches: a check that never fires or fires on a sound downlight.
@@ -140,23 +118,11 @@ mod tests {
     fn each_fault_has_its_finding() {
         let (gammas, sound) = ([0.0, 45.0, 90.0, 180.0], [100.0, 60.0, 0.0, 0.0]);
         assert!(codes(&photometry(sound, sound, gammas)).is_empty());
-        assert_eq!(
-            codes(&photometry(sound, [90.0, 60.0, 0.0, 0.0], gammas)),
-            ["unequal-nadir"]
-        );
+        assert_eq!(codes(&photometry(sound, [90.0, 60.0, 0.0, 0.0], gammas)), ["unequal-nadir"]);
         let up = [100.0, 60.0, 5.0, 5.0];
-        assert_eq!(
-            codes(&photometry(up, up, gammas)),
-            ["horizon-light", "flat-uplight"]
-        );
-        assert_eq!(
-            codes(&photometry(sound, sound, [10.0, 45.0, 80.0, 90.0])),
-            ["missing-nadir"]
-        );
-        assert_eq!(
-            codes(&photometry(sound, sound, [0.0, 45.0, 60.0, 80.0])),
-            ["missing-range"]
-        );
+        assert_eq!(codes(&photometry(up, up, gammas)), ["horizon-light", "flat-uplight"]);
+        assert_eq!(codes(&photometry(sound, sound, [10.0, 45.0, 80.0, 90.0])), ["missing-nadir"]);
+        assert_eq!(codes(&photometry(sound, sound, [0.0, 45.0, 60.0, 80.0])), ["missing-range"]);
         let mut point = photometry(sound, sound, gammas);
         point.opening = Opening::Point;
         assert_eq!(codes(&point), ["zero-area"]);
@@ -171,9 +137,7 @@ mod tests {
         assert!(codes(&lossy).is_empty());
         lossy.format = Format::Eulumdat;
         assert_eq!(codes(&lossy), ["flux-mismatch"]);
-        lossy.format = Format::Lm63 {
-            version: Lm63Version::Y2002,
-        };
+        lossy.format = Format::Lm63 { version: Lm63Version::Y2002 };
         lossy.rated_flux_lm = Some(0.5 * lossy.distribution.flux().0);
         assert_eq!(codes(&lossy), ["flux-mismatch"]);
     }

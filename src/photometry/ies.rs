@@ -25,20 +25,14 @@ pub enum Lm63Version {
 
 /// An edition line or a TILT line.
 pub(super) fn recognises(lines: &[&str]) -> bool {
-    let first = lines
-        .iter()
-        .map(|line| line.trim())
-        .find(|line| !line.is_empty())
-        .unwrap_or_default();
+    let first = lines.iter().map(|line| line.trim()).find(|line| !line.is_empty()).unwrap_or_default();
     first.starts_with("IESNA") || first.starts_with("IES:") || tilt_line(lines).is_some()
 }
 
 fn tilt_line(lines: &[&str]) -> Option<usize> {
     let is_tilt = |line: &&str| {
         let line = line.trim_start();
-        line.get(..4)
-            .is_some_and(|word| word.eq_ignore_ascii_case("TILT"))
-            && line.contains('=')
+        line.get(..4).is_some_and(|word| word.eq_ignore_ascii_case("TILT")) && line.contains('=')
     };
     lines.iter().position(is_tilt)
 }
@@ -47,19 +41,10 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     let mut findings = Vec::new();
     let version = version(lines, &mut findings);
     let Some(tilt_index) = tilt_line(lines) else {
-        return Err(Fault::new(
-            lines.len(),
-            "the file ends before its TILT= line",
-            DAMAGED,
-        ));
+        return Err(Fault::new(lines.len(), "the file ends before its TILT= line", DAMAGED));
     };
     let mut numbers = Numbers::new(lines, tilt_index + 1, Comma::Separator);
-    let tilt = tilt_factor(
-        lines[tilt_index],
-        tilt_index + 1,
-        &mut numbers,
-        &mut findings,
-    )?;
+    let tilt = tilt_factor(lines[tilt_index], tilt_index + 1, &mut numbers, &mut findings)?;
     let head = Head::read(&mut numbers)?;
     let (n_gamma, n_plane) = head.counts(lines)?;
     let gammas = numbers.angles("γ", n_gamma)?;
@@ -70,16 +55,10 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     let mut planes = Vec::new();
     for angle in &angles {
         let cd = numbers.plane(&format!("{}°", angle.value), &gammas, factor)?;
-        planes.push(Plane {
-            angle_deg: angle.value,
-            cd,
-        });
+        planes.push(Plane { angle_deg: angle.value, cd });
     }
     if let Some((line, token)) = numbers.rest() {
-        let message = format!(
-            "text after the last intensity, from '{}': ignored",
-            shortened(token)
-        );
+        let message = format!("text after the last intensity, from '{}': ignored", shortened(token));
         findings.push(Finding::new("trailing-data", line, message));
     }
     let planes = expanded(planes, angles[0].line, &mut findings)?;
@@ -103,11 +82,7 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
 }
 
 fn version(lines: &[&str], findings: &mut Vec<Finding>) -> Lm63Version {
-    let first = lines
-        .iter()
-        .map(|line| line.trim())
-        .find(|line| !line.is_empty())
-        .unwrap_or_default();
+    let first = lines.iter().map(|line| line.trim()).find(|line| !line.is_empty()).unwrap_or_default();
     if !first.starts_with("IES") {
         return Lm63Version::Y1986;
     }
@@ -120,10 +95,7 @@ fn version(lines: &[&str], findings: &mut Vec<Finding>) -> Lm63Version {
         ("2019", Lm63Version::Y2019),
         ("19", Lm63Version::Y2019),
     ];
-    let found = known
-        .iter()
-        .find(|(ending, _)| first.ends_with(ending))
-        .map(|(_, version)| *version);
+    let found = known.iter().find(|(ending, _)| first.ends_with(ending)).map(|(_, version)| *version);
     found.unwrap_or_else(|| {
         let message = format!("unknown edition '{}': read as LM-63-2002", shortened(first));
         findings.push(Finding::new("unknown-edition", 1, message));
@@ -138,30 +110,19 @@ fn tilt_factor(
     numbers: &mut Numbers,
     findings: &mut Vec<Finding>,
 ) -> Result<f64, Fault> {
-    let value = tilt
-        .split_once('=')
-        .map(|(_, value)| value.trim())
-        .unwrap_or_default();
+    let value = tilt.split_once('=').map(|(_, value)| value.trim()).unwrap_or_default();
     if value.eq_ignore_ascii_case("NONE") {
         return Ok(1.0);
     }
     if !value.eq_ignore_ascii_case("INCLUDE") {
         let message = format!("tilt data in another file ('{}')", shortened(value));
-        return Err(Fault::new(
-            line,
-            message,
-            "paste the tilt data after TILT=INCLUDE, or use TILT=NONE",
-        ));
+        return Err(Fault::new(line, message, "paste the tilt data after TILT=INCLUDE, or use TILT=NONE"));
     }
     numbers.next("the lamp-to-luminaire geometry")?;
     let pairs = count(numbers.next("the number of tilt angles")?, "tilt angles", 1)?;
     let mut angles = Vec::new();
     for k in 1..=pairs {
-        angles.push(
-            numbers
-                .next(format_args!("tilt angle {k} of {pairs}"))?
-                .value,
-        );
+        angles.push(numbers.next(format_args!("tilt angle {k} of {pairs}"))?.value);
     }
     let mut factors = Vec::new();
     for k in 1..=pairs {
@@ -178,11 +139,7 @@ fn tilt_factor(
 }
 
 /// The planes of the file and their mirror images, by the range of the horizontal angles.
-fn expanded(
-    planes: Vec<Plane>,
-    line: usize,
-    findings: &mut Vec<Finding>,
-) -> Result<Vec<Plane>, Fault> {
+fn expanded(planes: Vec<Plane>, line: usize, findings: &mut Vec<Finding>) -> Result<Vec<Plane>, Fault> {
     let is = |a: f64, b: f64| (a - b).abs() < 1e-3;
     let (first, last) = (planes[0].angle_deg, planes[planes.len() - 1].angle_deg);
     if planes.len() == 1 {
@@ -222,12 +179,8 @@ fn expanded(
 
 /// Manufacturer, catalogue number and name, or the first line of a file without keywords.
 fn description(header: &[&str]) -> String {
-    let value = |keyword: &str| {
-        header
-            .iter()
-            .find_map(|line| line.trim_start().strip_prefix(keyword))
-            .map(str::trim)
-    };
+    let value =
+        |keyword: &str| header.iter().find_map(|line| line.trim_start().strip_prefix(keyword)).map(str::trim);
     let parts = ["[MANUFAC]", "[LUMCAT]", "[LUMINAIRE]"]
         .into_iter()
         .filter_map(value)
@@ -236,10 +189,8 @@ fn description(header: &[&str]) -> String {
     if !named.is_empty() {
         return named;
     }
-    let free = header
-        .iter()
-        .map(|line| line.trim())
-        .find(|line| !line.is_empty() && !line.starts_with("IES"));
+    let free =
+        header.iter().map(|line| line.trim()).find(|line| !line.is_empty() && !line.starts_with("IES"));
     free.unwrap_or_default().to_owned()
 }
 
@@ -263,11 +214,7 @@ pub(super) mod tests {
     }
 
     fn codes(photometry: &Photometry) -> Vec<&'static str> {
-        photometry
-            .findings
-            .iter()
-            .map(|finding| finding.code)
-            .collect()
+        photometry.findings.iter().map(|finding| finding.code).collect()
     }
 
     /// Catches: a factor forgotten or applied twice, 0° laid across, feet taken as metres.
@@ -275,34 +222,13 @@ pub(super) mod tests {
     fn factors_frame_and_feet() {
         let lamp = read_sample("TILT", "TILT").expect("sound");
         let at = |azimuth: f64, gamma: f64| lamp.distribution.intensity_at(azimuth, gamma);
-        for (azimuth, cd) in [
-            (0.0, 72.0),
-            (180.0, 72.0),
-            (90.0, 36.0),
-            (270.0, 36.0),
-            (45.0, 54.0),
-        ] {
-            assert!(
-                (at(azimuth, 45.0) - cd).abs() < 1e-9,
-                "{azimuth}: {}",
-                at(azimuth, 45.0)
-            );
+        for (azimuth, cd) in [(0.0, 72.0), (180.0, 72.0), (90.0, 36.0), (270.0, 36.0), (45.0, 54.0)] {
+            assert!((at(azimuth, 45.0) - cd).abs() < 1e-9, "{azimuth}: {}", at(azimuth, 45.0));
         }
-        let Opening::Rect {
-            length_m, width_m, ..
-        } = lamp.opening
-        else {
-            panic!("{:?}", lamp.opening)
-        };
+        let Opening::Rect { length_m, width_m, .. } = lamp.opening else { panic!("{:?}", lamp.opening) };
         assert!((length_m - 1.2192).abs() < 1e-12 && (width_m - 0.3048).abs() < 1e-12);
-        assert_eq!(
-            (lamp.lamp_flux_lm, lamp.power_w, lamp.lor),
-            (Some(2000.0), Some(60.0), None)
-        );
-        assert_eq!(
-            (lamp.description.as_str(), codes(&lamp)),
-            ("Maker L-1", vec![])
-        );
+        assert_eq!((lamp.lamp_flux_lm, lamp.power_w, lamp.lor), (Some(2000.0), Some(60.0), None));
+        assert_eq!((lamp.description.as_str(), codes(&lamp)), ("Maker L-1", vec![]));
     }
 
     /// Catches: the reserved field of 2002 or the generation type of 2019 taken as a factor.
@@ -312,17 +238,9 @@ pub(super) mod tests {
         assert!((later.distribution.intensity_at(0.0, 0.0) - 180.0).abs() < 1e-9);
         assert_eq!(codes(&later), ["reserved-field"]);
         let newest = read_sample("IESNA:LM-63-1995", "IES:LM-63-2019").expect("sound");
-        assert!(
-            (newest.distribution.max_intensity().0 - 180.0).abs() < 1e-9
-                && codes(&newest).is_empty()
-        );
+        assert!((newest.distribution.max_intensity().0 - 180.0).abs() < 1e-9 && codes(&newest).is_empty());
         let oldest = read_sample("IESNA:LM-63-1995\r\n", "").expect("sound");
-        assert_eq!(
-            oldest.format,
-            Format::Lm63 {
-                version: Lm63Version::Y1986
-            }
-        );
+        assert_eq!(oldest.format, Format::Lm63 { version: Lm63Version::Y1986 });
     }
 
     /// Catches: absolute photometry scaled by −1 lm, or rated by it.
@@ -339,9 +257,7 @@ pub(super) mod tests {
         let value = |angles: &str, azimuth: f64| {
             read_sample("0,90", angles).map(|lamp| lamp.distribution.intensity_at(azimuth, 45.0))
         };
-        let near = |found: Result<f64, PhotometryError>, cd: f64| {
-            (found.expect("sound") - cd).abs() < 1e-9
-        };
+        let near = |found: Result<f64, PhotometryError>, cd: f64| (found.expect("sound") - cd).abs() < 1e-9;
         assert!(near(value("90 270", 90.0), 72.0) && near(value("90 270", 270.0), 36.0));
         assert!(near(value("90 270", 0.0), 54.0) && near(value("90 270", 180.0), 54.0));
         assert!(near(value("0 180", 270.0), 54.0) && near(value("0 180", 180.0), 36.0));
@@ -363,44 +279,25 @@ pub(super) mod tests {
     /// Catches: damage accepted, or reported without its line and value.
     #[test]
     fn damage_is_named() {
-        assert_eq!(
-            error("0 45 90", "0 45 40"),
-            (7, "γ must rise, found 40° after 45°".to_owned())
-        );
-        assert_eq!(
-            error("3 2 1 1", "3 2 2 1"),
-            (5, "type B photometry is not supported yet".to_owned())
-        );
+        assert_eq!(error("0 45 90", "0 45 40"), (7, "γ must rise, found 40° after 45°".to_owned()));
+        assert_eq!(error("3 2 1 1", "3 2 2 1"), (5, "type B photometry is not supported yet".to_owned()));
         assert_eq!(
             error("100, 40 0", "100 -1 0"),
             (11, "the intensity at 90°, γ 45° is negative: -1".to_owned())
         );
         assert_eq!(
             error("100, 40 0", "100"),
-            (
-                11,
-                "the file ends before the intensity at 90°, γ 45°".to_owned()
-            )
+            (11, "the file ends before the intensity at 90°, γ 45°".to_owned())
         );
-        assert_eq!(
-            error("100 80", "100 x").1,
-            "expected the intensity at 0°, γ 45°, found 'x'"
-        );
+        assert_eq!(error("100 80", "100 x").1, "expected the intensity at 0°, γ 45°, found 'x'");
         assert_eq!(error("100 80", "100 NaN").0, 9);
         assert_eq!(error("2.0 3 2", "2.0 3000 2000").0, 5);
         assert_eq!(error("2.0 3 2", "2.0 1e18 1e18").0, 5);
-        assert_eq!(
-            error("2.0 3 2", "0 3 2").1,
-            "the candela multiplier is 0, expected a number > 0"
-        );
+        assert_eq!(error("2.0 3 2", "0 3 2").1, "the candela multiplier is 0, expected a number > 0");
         assert_eq!(error("1 1 1.0 4.0", "1 3 1.0 4.0").0, 5);
         let trailing = read_sample("100, 40 0", "100 40 0 \x1a 7").expect("tolerated");
         assert_eq!(
-            trailing
-                .findings
-                .iter()
-                .map(|f| (f.code, f.line))
-                .collect::<Vec<_>>(),
+            trailing.findings.iter().map(|f| (f.code, f.line)).collect::<Vec<_>>(),
             [("trailing-data", Some(11))]
         );
     }
@@ -408,13 +305,8 @@ pub(super) mod tests {
     /// Catches: bytes beyond ASCII in a keyword refused.
     #[test]
     fn any_encoding_in_keywords() {
-        let bytes: Vec<u8> = SAMPLE
-            .bytes()
-            .map(|byte| if byte == b'M' { 0xCC } else { byte })
-            .collect();
-        let text = SAMPLE
-            .replace("LM-63", "LX-63")
-            .replace("[MANUFAC]", "[XANUFAC]");
+        let bytes: Vec<u8> = SAMPLE.bytes().map(|byte| if byte == b'M' { 0xCC } else { byte }).collect();
+        let text = SAMPLE.replace("LM-63", "LX-63").replace("[MANUFAC]", "[XANUFAC]");
         assert!(parse(&bytes, "x.ies").is_ok() && parse(text.as_bytes(), "x.ies").is_ok());
     }
 }

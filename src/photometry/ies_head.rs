@@ -28,10 +28,7 @@ impl Head {
     pub(super) fn read(numbers: &mut Numbers) -> Result<Self, Fault> {
         let lamps = numbers.next("the number of lamps")?.value;
         let lumens = numbers.next("the lumens per lamp")?;
-        let multiplier = positive(
-            numbers.next("the candela multiplier")?,
-            "the candela multiplier",
-        )?;
+        let multiplier = positive(numbers.next("the candela multiplier")?, "the candela multiplier")?;
         let n_gamma = numbers.next("the number of vertical angles")?;
         let n_plane = numbers.next("the number of horizontal angles")?;
         let kind = numbers.next("the photometric type")?;
@@ -67,9 +64,8 @@ impl Head {
         // Every value takes a digit and a separator.
         let holds = lines.iter().map(|line| line.len() + 1).sum::<usize>() / 2 + 1;
         if n_gamma.saturating_mul(n_plane) > holds.min(MAX_VALUES) {
-            let message = format!(
-                "{n_gamma} vertical times {n_plane} horizontal angles are more than the file holds"
-            );
+            let message =
+                format!("{n_gamma} vertical times {n_plane} horizontal angles are more than the file holds");
             return Err(Fault::new(self.n_gamma.line, message, DAMAGED));
         }
         Ok((n_gamma, n_plane))
@@ -81,14 +77,9 @@ impl Head {
             return self.multiplier * self.ballast * ballast_lamp;
         }
         if version != Lm63Version::Y2019 && (ballast_lamp - 1.0).abs() > 1e-9 {
-            let message = format!(
-                "the field after the ballast factor is {ballast_lamp}, expected 1: not applied"
-            );
-            findings.push(Finding::new(
-                "reserved-field",
-                self.ballast_lamp.line,
-                message,
-            ));
+            let message =
+                format!("the field after the ballast factor is {ballast_lamp}, expected 1: not applied");
+            findings.push(Finding::new("reserved-field", self.ballast_lamp.line, message));
         }
         self.multiplier * self.ballast
     }
@@ -128,7 +119,6 @@ fn require_type_c(kind: Number) -> Result<(), Fault> {
         3.0 => "type A photometry is not supported yet".to_owned(),
         other => format!("photometric type {other}, expected 1 (C), 2 (B) or 3 (A)"),
     };
-    let hint =
-        "ask the manufacturer for type C photometry, or convert the file with its photometric tool";
+    let hint = "ask the manufacturer for type C photometry, or convert the file with its photometric tool";
     Err(Fault::new(kind.line, message, hint))
 }

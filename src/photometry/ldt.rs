@@ -15,34 +15,19 @@ const DIRECT_RATIOS: usize = 10;
 
 /// A symmetry 0 … 4 in line 3 and counts in lines 4 and 6.
 pub(super) fn recognises(lines: &[&str]) -> bool {
-    let number = |line: usize| {
-        lines
-            .get(line - 1)
-            .and_then(|text| parse(text.trim(), Comma::DecimalPoint))
-    };
-    let symmetry =
-        number(3).is_some_and(|isym| isym.fract().abs() < 1e-9 && (0.0..=4.0).contains(&isym));
+    let number = |line: usize| lines.get(line - 1).and_then(|text| parse(text.trim(), Comma::DecimalPoint));
+    let symmetry = number(3).is_some_and(|isym| isym.fract().abs() < 1e-9 && (0.0..=4.0).contains(&isym));
     symmetry && number(4).is_some() && number(6).is_some()
 }
 
 pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
-    let mut head = Head {
-        lines,
-        findings: Vec::new(),
-    };
+    let mut head = Head { lines, findings: Vec::new() };
     let symmetry = Symmetry::read(head.required(3, "the symmetry Isym")?)?;
     let n_plane = count(head.required(4, "the number of C planes")?, "C planes", 1)?;
     let n_gamma = count(head.required(6, "the number of γ angles")?, "γ angles", 2)?;
     let stored = n_plane.min(symmetry.stored(n_plane));
-    if stored.saturating_mul(n_gamma)
-        > lines
-            .iter()
-            .map(|line| line.len())
-            .sum::<usize>()
-            .min(MAX_VALUES)
-    {
-        let message =
-            format!("{n_plane} C planes of {n_gamma} γ angles are more than the file holds");
+    if stored.saturating_mul(n_gamma) > lines.iter().map(|line| line.len()).sum::<usize>().min(MAX_VALUES) {
+        let message = format!("{n_plane} C planes of {n_gamma} γ angles are more than the file holds");
         return Err(Fault::new(4, message, DAMAGED));
     }
     let opening = head.opening();
@@ -54,41 +39,24 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     }
     let angles = numbers.angles("C", n_plane)?;
     if angles[0].value < 0.0 || angles[n_plane - 1].value > 360.0 {
-        let message = format!(
-            "C runs from {}° to {}°",
-            angles[0].value,
-            angles[n_plane - 1].value
-        );
+        let message = format!("C runs from {}° to {}°", angles[0].value, angles[n_plane - 1].value);
         return Err(Fault::new(angles[0].line, message, DAMAGED));
     }
     let gammas = numbers.angles("γ", n_gamma)?;
     check_gamma_range(&gammas)?;
     let data_line = numbers.line + 1;
-    let planes = read_planes(
-        &mut numbers,
-        symmetry,
-        &angles,
-        &gammas,
-        lamps.cd_per_value,
-        &mut head.findings,
-    )?;
+    let planes =
+        read_planes(&mut numbers, symmetry, &angles, &gammas, lamps.cd_per_value, &mut head.findings)?;
     if let Some((line, token)) = numbers.rest() {
-        let message = format!(
-            "text after the last intensity, from '{}': ignored",
-            shortened(token)
-        );
-        head.findings
-            .push(Finding::new("trailing-data", line, message));
+        let message = format!("text after the last intensity, from '{}': ignored", shortened(token));
+        head.findings.push(Finding::new("trailing-data", line, message));
     }
     head.check_light_source_type(&planes);
     let gammas = gammas.iter().map(|gamma| gamma.value).collect();
     let distribution = close_circle(planes, gammas, TURN_DEG)
         .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?;
     head.check_down_share(&distribution);
-    let lor = head
-        .optional(23)
-        .filter(|percent| *percent > 0.0)
-        .map(|percent| 0.01 * percent);
+    let lor = head.optional(23).filter(|percent| *percent > 0.0).map(|percent| 0.01 * percent);
     Ok(Photometry {
         format: Format::Eulumdat,
         description: head.description(),
@@ -115,21 +83,10 @@ enum Symmetry {
 
 impl Symmetry {
     fn read(isym: Number) -> Result<Self, Fault> {
-        let all = [
-            Self::None,
-            Self::Rotational,
-            Self::AboutC0,
-            Self::AboutC90,
-            Self::Both,
-        ];
-        let found = all
-            .into_iter()
-            .enumerate()
-            .find(|(k, _)| (isym.value - *k as f64).abs() < 1e-9);
+        let all = [Self::None, Self::Rotational, Self::AboutC0, Self::AboutC90, Self::Both];
+        let found = all.into_iter().enumerate().find(|(k, _)| (isym.value - *k as f64).abs() < 1e-9);
         let message = || format!("symmetry {}, expected 0 … 4", isym.value);
-        found
-            .map(|(_, symmetry)| symmetry)
-            .ok_or_else(|| Fault::new(isym.line, message(), DAMAGED))
+        found.map(|(_, symmetry)| symmetry).ok_or_else(|| Fault::new(isym.line, message(), DAMAGED))
     }
 
     /// At least so many of `n` planes are stored.
@@ -152,20 +109,14 @@ impl Symmetry {
             Self::Rotational => (vec![0.0], &[]),
             Self::AboutC0 => (up_to(180.0).collect(), &[0.0, 180.0]),
             Self::AboutC90 => {
-                let late =
-                    all_deg().filter(|angle| *angle >= 270.0 - 1e-6 && *angle < 360.0 - 1e-6);
+                let late = all_deg().filter(|angle| *angle >= 270.0 - 1e-6 && *angle < 360.0 - 1e-6);
                 (late.chain(up_to(90.0)).collect(), &[270.0, 90.0])
             }
             Self::Both => (up_to(90.0).collect(), &[0.0, 90.0]),
         };
         if let Some(missing) = needed.iter().find(|deg| !has(**deg)) {
-            let message =
-                format!("the declared symmetry needs a plane at C{missing}, which is not listed");
-            return Err(Fault::new(
-                all[0].line,
-                message,
-                "check lines 3 (symmetry) to 5 (step of C)",
-            ));
+            let message = format!("the declared symmetry needs a plane at C{missing}, which is not listed");
+            return Err(Fault::new(all[0].line, message, "check lines 3 (symmetry) to 5 (step of C)"));
         }
         Ok(stored)
     }
@@ -226,10 +177,7 @@ fn symmetry_error(symmetry: Symmetry, planes: &[Plane], gammas: &[Number]) -> f6
     };
     let mut widest = 0.0_f64;
     for plane in planes {
-        let bare = Plane {
-            angle_deg: plane.angle_deg,
-            cd: Vec::new(),
-        };
+        let bare = Plane { angle_deg: plane.angle_deg, cd: Vec::new() };
         for image in symmetry.expand(vec![bare]) {
             for (gamma, cd) in gammas_deg.iter().zip(&plane.cd) {
                 let mirrored_cd = distribution.intensity_at(image.angle_deg, *gamma);
@@ -254,21 +202,14 @@ pub(super) mod tests {
             "Maker;2;{isym};8;45;3;45;rep;Lamp;no;file;date;1300;300;80;1200;200;10;20;30;40;100;90;1;0;1"
         );
         let set = "1;LED;2000;4000;1A/>90;25,5";
-        let mut lines: Vec<String> = format!("{head};{set}")
-            .split(';')
-            .map(str::to_owned)
-            .collect();
+        let mut lines: Vec<String> = format!("{head};{set}").split(';').map(str::to_owned).collect();
         lines.extend((0..10).map(|_| "0.5".to_owned()));
         lines.extend((0..8).map(|k| (k * C_STEP).to_string()));
         lines.extend([0, 45, 90].map(|gamma| gamma.to_string()));
         let stored = [8, 1, 5, 5, 3][isym];
-        lines.extend((0..stored).flat_map(|k| {
-            [
-                "500".to_owned(),
-                (100 + 10 * k).to_string(),
-                "0,0".to_owned(),
-            ]
-        }));
+        lines.extend(
+            (0..stored).flat_map(|k| ["500".to_owned(), (100 + 10 * k).to_string(), "0,0".to_owned()]),
+        );
         lines
     }
 
@@ -311,11 +252,7 @@ pub(super) mod tests {
             for (k, value) in planes.iter().enumerate() {
                 let azimuth = (k * C_STEP) as f64 - 90.0;
                 let cd = lamp.distribution.intensity_at(azimuth, 45.0);
-                assert!(
-                    (cd - 2.0 * f64::from(*value)).abs() < 1e-9,
-                    "Isym {isym}, C{}: {cd}",
-                    k * C_STEP
-                );
+                assert!((cd - 2.0 * f64::from(*value)).abs() < 1e-9, "Isym {isym}, C{}: {cd}", k * C_STEP);
             }
             assert_eq!(lamp.distribution.is_rotationally_symmetric(), isym == 1);
             assert!(codes(&lamp).is_empty(), "{:?}", lamp.findings);
@@ -326,26 +263,15 @@ pub(super) mod tests {
     #[test]
     fn sizes_and_lamps() {
         let lamp = read_lines(&lines(0)).expect("sound");
-        let rect = Opening::Rect {
-            length_m: 1.2,
-            width_m: 0.2,
-            side_x_m: 0.03,
-            side_y_m: 0.02,
-        };
+        let rect = Opening::Rect { length_m: 1.2, width_m: 0.2, side_x_m: 0.03, side_y_m: 0.02 };
         assert_eq!(format!("{:.6?}", lamp.opening), format!("{rect:.6?}"));
         assert_eq!(
             (lamp.lamp_flux_lm, lamp.rated_flux_lm, lamp.power_w),
             (Some(2000.0), Some(1800.0), Some(25.5))
         );
-        assert_eq!(
-            (lamp.colour_rendering, lamp.description.as_str()),
-            (Some(90.0), "Maker Lamp")
-        );
+        assert_eq!((lamp.colour_rendering, lamp.description.as_str()), (Some(90.0), "Maker Lamp"));
         let round = edited(0, 17, "0").expect("sound");
-        let disc = Opening::Disc {
-            diameter_m: 1.2,
-            height_m: 0.025,
-        };
+        let disc = Opening::Disc { diameter_m: 1.2, height_m: 0.025 };
         assert_eq!(format!("{:.6?}", round.opening), format!("{disc:.6?}"));
         let doubled = edited(0, 24, "2").expect("sound");
         assert!((doubled.distribution.max_intensity().0 - 2000.0).abs() < 1e-9);
@@ -362,39 +288,21 @@ pub(super) mod tests {
         assert_eq!(codes(&edited(0, 2, "1").expect("usable")), ["asymmetry"]);
         assert_eq!(codes(&edited(0, 22, "40").expect("usable")), ["down-share"]);
         assert_eq!(codes(&edited(0, 25, "15").expect("usable")), ["tilt"]);
-        assert_eq!(
-            codes(&edited(0, 24, "0").expect("usable")),
-            ["conversion-factor"]
-        );
-        assert_eq!(
-            codes(&edited(0, 16, "").expect("usable")),
-            ["bad-size", "zero-area"]
-        );
+        assert_eq!(codes(&edited(0, 24, "0").expect("usable")), ["conversion-factor"]);
+        assert_eq!(codes(&edited(0, 16, "").expect("usable")), ["bad-size", "zero-area"]);
         let lamp = edited(0, 3, "2").expect("usable");
         assert_eq!(codes(&lamp), ["asymmetry"]);
         // C45 and C315 differ most: 170 − 110 of 500.
-        assert!(
-            lamp.findings[0].message.contains("12.0 %"),
-            "{:?}",
-            lamp.findings
-        );
+        assert!(lamp.findings[0].message.contains("12.0 %"), "{:?}", lamp.findings);
         let mut trailing = lines(4);
         trailing.push("\u{1a} end".to_owned());
-        assert_eq!(
-            codes(&read_lines(&trailing).expect("usable")),
-            ["trailing-data"]
-        );
+        assert_eq!(codes(&read_lines(&trailing).expect("usable")), ["trailing-data"]);
         let mut sets = lines(4);
         "2".clone_into(&mut sets[25]);
-        let second: Vec<String> = ["1", "HIT", "9000", "3000", "80", "100"]
-            .map(str::to_owned)
-            .to_vec();
+        let second: Vec<String> = ["1", "HIT", "9000", "3000", "80", "100"].map(str::to_owned).to_vec();
         sets.splice(32..32, second);
         let lamp = read_lines(&sets).expect("usable");
-        assert_eq!(
-            (codes(&lamp), lamp.lamp_flux_lm),
-            (vec!["lamp-sets"], Some(2000.0))
-        );
+        assert_eq!((codes(&lamp), lamp.lamp_flux_lm), (vec!["lamp-sets"], Some(2000.0)));
     }
 
     /// Catches: damage accepted, or reported without its line and value.
@@ -404,37 +312,16 @@ pub(super) mod tests {
             let error = edited(4, line, text).expect_err("damaged");
             (error.line, error.message)
         };
-        assert_eq!(
-            error(53, "-5"),
-            (53, "γ must rise, found -5° after 45°".to_owned())
-        );
-        assert_eq!(
-            error(45, "45"),
-            (45, "C must rise, found 45° after 45°".to_owned())
-        );
-        assert_eq!(
-            error(58, "-0.1"),
-            (
-                58,
-                "the intensity at C45, γ 45° is negative: -0.1".to_owned()
-            )
-        );
-        assert_eq!(
-            error(58, "1e999").1,
-            "expected the intensity at C45, γ 45°, found '1e999'"
-        );
+        assert_eq!(error(53, "-5"), (53, "γ must rise, found -5° after 45°".to_owned()));
+        assert_eq!(error(45, "45"), (45, "C must rise, found 45° after 45°".to_owned()));
+        assert_eq!(error(58, "-0.1"), (58, "the intensity at C45, γ 45° is negative: -0.1".to_owned()));
+        assert_eq!(error(58, "1e999").1, "expected the intensity at C45, γ 45°, found '1e999'");
         assert_eq!(error(29, "0").0, 29);
         assert_eq!(error(4, "999999999").0, 4);
         assert_eq!(error(26, "999999999").0, 26);
-        assert_eq!(
-            error(6, "1").1,
-            "1 γ angles, expected a whole number from 2"
-        );
+        assert_eq!(error(6, "1").1, "1 γ angles, expected a whole number from 2");
         let lines = lines(4);
         let short = read_lines(&lines[..lines.len() - 2]).expect_err("short");
-        assert_eq!(
-            short.message,
-            "the file ends before the intensity at C90, γ 45°"
-        );
+        assert_eq!(short.message, "the file ends before the intensity at C90, γ 45°");
     }
 }

@@ -30,10 +30,7 @@ pub(super) struct Head<'a> {
 
 impl Head<'_> {
     pub(super) fn text(&self, line: usize) -> &str {
-        self.lines
-            .get(line - 1)
-            .map(|text| text.trim())
-            .unwrap_or_default()
+        self.lines.get(line - 1).map(|text| text.trim()).unwrap_or_default()
     }
 
     pub(super) fn optional(&self, line: usize) -> Option<f64> {
@@ -50,9 +47,7 @@ impl Head<'_> {
             ));
         }
         let message = || format!("expected {what}, found '{}'", shortened(self.text(line)));
-        let value = self
-            .optional(line)
-            .ok_or_else(|| Fault::new(line, message(), DAMAGED))?;
+        let value = self.optional(line).ok_or_else(|| Fault::new(line, message(), DAMAGED))?;
         Ok(Number { value, line })
     }
 
@@ -61,10 +56,8 @@ impl Head<'_> {
         if let Some(size_mm) = self.optional(line).filter(|size| *size >= 0.0) {
             return size_mm * MM;
         }
-        let message = format!(
-            "'{}' is no size in mm: taken as 0, which lowers the luminous area",
-            self.text(line)
-        );
+        let message =
+            format!("'{}' is no size in mm: taken as 0, which lowers the luminous area", self.text(line));
         self.findings.push(Finding::new("bad-size", line, message));
         0.0
     }
@@ -84,25 +77,14 @@ impl Head<'_> {
                 side_y_m: 0.5 * (c0 + c180),
             };
         }
-        Opening::Disc {
-            diameter_m: length_m,
-            height_m: 0.25 * (c0 + c90 + c180 + c270),
-        }
+        Opening::Disc { diameter_m: length_m, height_m: 0.25 * (c0 + c90 + c180 + c270) }
     }
 
     pub(super) fn lamps(&mut self) -> Result<Lamps, Fault> {
-        let n_sets = count(
-            self.required(26, "the number of lamp sets")?,
-            "lamp sets",
-            1,
-        )?;
+        let n_sets = count(self.required(26, "the number of lamp sets")?, "lamp sets", 1)?;
         let end = HEAD_LINES.saturating_add(n_sets.saturating_mul(SET_LINES));
         if end > self.lines.len() {
-            return Err(Fault::new(
-                26,
-                format!("the file ends within its {n_sets} lamp sets"),
-                DAMAGED,
-            ));
+            return Err(Fault::new(26, format!("the file ends within its {n_sets} lamp sets"), DAMAGED));
         }
         if n_sets > 1 {
             let first = HEAD_LINES + 1;
@@ -112,16 +94,13 @@ impl Head<'_> {
                 self.text(first + 2),
                 self.text(first + 5)
             );
-            self.findings
-                .push(Finding::new("lamp-sets", first, message));
+            self.findings.push(Finding::new("lamp-sets", first, message));
         }
         let absolute = self.required(27, "the number of lamps")?.value < 0.0;
         let flux = self.required(29, "the luminous flux of the lamps")?;
         if !(flux.value > 0.0) {
-            let message = format!(
-                "the luminous flux of the lamps is {} lm, expected a number > 0",
-                flux.value
-            );
+            let message =
+                format!("the luminous flux of the lamps is {} lm, expected a number > 0", flux.value);
             let hint = "intensities are per 1000 lm: write the flux into this line";
             return Err(Fault::new(flux.line, message, hint));
         }
@@ -147,16 +126,13 @@ impl Head<'_> {
             return factor;
         }
         let message = format!("conversion factor '{}': taken as 1", self.text(24));
-        self.findings
-            .push(Finding::new("conversion-factor", 24, message));
+        self.findings.push(Finding::new("conversion-factor", 24, message));
         1.0
     }
 
     /// Line 2 may declare a light source symmetric about the vertical axis.
     pub(super) fn check_light_source_type(&mut self, planes: &[Plane]) {
-        let rotational = self
-            .optional(2)
-            .is_some_and(|kind| (kind - 1.0).abs() < 1e-9);
+        let rotational = self.optional(2).is_some_and(|kind| (kind - 1.0).abs() < 1e-9);
         let spread = spread(planes);
         if rotational && spread > 0.02 {
             let message = format!(
@@ -183,34 +159,19 @@ impl Head<'_> {
     }
 
     pub(super) fn description(&self) -> String {
-        let parts = [self.text(1), self.text(9)]
-            .into_iter()
-            .filter(|part| !part.is_empty());
+        let parts = [self.text(1), self.text(9)].into_iter().filter(|part| !part.is_empty());
         parts.collect::<Vec<_>>().join(" ")
     }
 }
 
 /// R_a as a number, or the lower end of its group (DIN 5035): 1A ≥ 90, 1B ≥ 80, 2A ≥ 70 …
 fn colour_rendering(text: &str) -> Option<f64> {
-    let groups = [
-        ("1A", 90.0),
-        ("1B", 80.0),
-        ("2A", 70.0),
-        ("2B", 60.0),
-        ("3", 40.0),
-        ("4", 20.0),
-    ];
-    let number = text
-        .split_whitespace()
-        .next()
-        .and_then(|token| parse(token, Comma::DecimalPoint));
+    let groups = [("1A", 90.0), ("1B", 80.0), ("2A", 70.0), ("2B", 60.0), ("3", 40.0), ("4", 20.0)];
+    let number = text.split_whitespace().next().and_then(|token| parse(token, Comma::DecimalPoint));
     match number {
         Some(ra) if ra > 4.0 && ra <= 100.0 => Some(ra),
         Some(group) if !(3.0..=4.0).contains(&group) => None,
-        _ => groups
-            .iter()
-            .find(|(group, _)| text.to_ascii_uppercase().starts_with(group))
-            .map(|(_, ra)| *ra),
+        _ => groups.iter().find(|(group, _)| text.to_ascii_uppercase().starts_with(group)).map(|(_, ra)| *ra),
     }
 }
 
@@ -222,18 +183,6 @@ mod tests {
     #[test]
     fn colour_rendering_groups() {
         let read = ["82", "1B", "1A/>90", "0", "nw", "4", "2b", ""].map(colour_rendering);
-        assert_eq!(
-            read,
-            [
-                Some(82.0),
-                Some(80.0),
-                Some(90.0),
-                None,
-                None,
-                Some(20.0),
-                Some(60.0),
-                None
-            ]
-        );
+        assert_eq!(read, [Some(82.0), Some(80.0), Some(90.0), None, None, Some(20.0), Some(60.0), None]);
     }
 }

@@ -73,11 +73,7 @@ pub struct Finding {
 
 impl Finding {
     fn new(code: &'static str, line: impl Into<Option<usize>>, message: impl Into<String>) -> Self {
-        Self {
-            code,
-            line: line.into(),
-            message: message.into(),
-        }
+        Self { code, line: line.into(), message: message.into() }
     }
 }
 
@@ -105,11 +101,7 @@ struct Fault {
 
 impl Fault {
     fn new(line: usize, message: impl Into<String>, hint: &'static str) -> Self {
-        Self {
-            line,
-            message: message.into(),
-            hint,
-        }
+        Self { line, message: message.into(), hint }
     }
 }
 
@@ -127,8 +119,7 @@ pub fn parse(bytes: &[u8], file_name: &str) -> Result<Photometry, PhotometryErro
 }
 
 fn parse_content(bytes: &[u8]) -> Result<Photometry, Fault> {
-    const EXPORT_AGAIN: &str =
-        "get the photometric file (.ies or .ldt) from its manufacturer again";
+    const EXPORT_AGAIN: &str = "get the photometric file (.ies or .ldt) from its manufacturer again";
     let text = text::decode(bytes);
     if text.trim().is_empty() {
         return Err(Fault::new(1, "the file is empty", EXPORT_AGAIN));
@@ -147,11 +138,7 @@ fn parse_content(bytes: &[u8]) -> Result<Photometry, Fault> {
         return Err(Fault::new(3.min(lines.len()), message, EXPORT_AGAIN));
     };
     if !(photometry.distribution.flux().0 > 0.0) {
-        return Err(Fault::new(
-            lines.len(),
-            "every intensity is 0",
-            EXPORT_AGAIN,
-        ));
+        return Err(Fault::new(lines.len(), "every intensity is 0", EXPORT_AGAIN));
     }
     let more = findings::check(&photometry);
     photometry.findings.extend(more);
@@ -165,14 +152,8 @@ mod tests {
     /// Catches: a panic on what is no photometry at all, a message without place or hint.
     #[test]
     fn rubbish_is_an_error_with_a_hint() {
-        let rubbish: [&[u8]; 6] = [
-            b"",
-            b" \r\n\r\n",
-            b"PK\x03\x04",
-            b"\0\xff\xfe\x01",
-            b"hello",
-            b"a\nb\n9\nc\n",
-        ];
+        let rubbish: [&[u8]; 6] =
+            [b"", b" \r\n\r\n", b"PK\x03\x04", b"\0\xff\xfe\x01", b"hello", b"a\nb\n9\nc\n"];
         for bytes in rubbish {
             let error = parse(bytes, "a.ldt").expect_err("rubbish");
             assert!(
@@ -186,12 +167,7 @@ mod tests {
     #[test]
     fn content_decides_the_format() {
         let ies = parse(ies::tests::SAMPLE.as_bytes(), "lamp.ldt").expect("LM-63");
-        assert_eq!(
-            ies.format,
-            Format::Lm63 {
-                version: Lm63Version::Y1995
-            }
-        );
+        assert_eq!(ies.format, Format::Lm63 { version: Lm63Version::Y1995 });
         let ldt = parse(ldt::tests::sample().as_bytes(), "lamp.ies").expect("EULUMDAT");
         assert_eq!(ldt.format, Format::Eulumdat);
     }

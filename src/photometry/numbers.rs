@@ -38,31 +38,15 @@ impl<'a> Numbers<'a> {
     pub(super) fn new(lines: &[&'a str], first: usize, comma: Comma) -> Self {
         let separates = |c: char| c.is_whitespace() || (c == ',' && comma == Comma::Separator);
         let of_line = |(index, line): (usize, &&'a str)| {
-            line.split(separates)
-                .filter(|token| !token.is_empty())
-                .map(move |token| (index + 1, token))
+            line.split(separates).filter(|token| !token.is_empty()).map(move |token| (index + 1, token))
         };
-        let tokens = lines
-            .iter()
-            .enumerate()
-            .skip(first)
-            .flat_map(of_line)
-            .collect();
-        Self {
-            tokens,
-            position: 0,
-            comma,
-            line: first,
-        }
+        let tokens = lines.iter().enumerate().skip(first).flat_map(of_line).collect();
+        Self { tokens, position: 0, comma, line: first }
     }
 
     pub(super) fn next(&mut self, what: impl Display) -> Result<Number, Fault> {
         let Some((line, token)) = self.tokens.get(self.position).copied() else {
-            return Err(Fault::new(
-                self.line,
-                format!("the file ends before {what}"),
-                DAMAGED,
-            ));
+            return Err(Fault::new(self.line, format!("the file ends before {what}"), DAMAGED));
         };
         (self.line, self.position) = (line, self.position + 1);
         let message = || format!("expected {what}, found '{}'", shortened(token));
@@ -88,16 +72,9 @@ impl<'a> Numbers<'a> {
         let mut angles: Vec<Number> = Vec::new();
         for k in 1..=count {
             let next = self.next(format_args!("{name} {k} of {count}"))?;
-            if let Some(previous) = angles
-                .last()
-                .filter(|previous| !(next.value > previous.value))
-            {
-                let message = format!(
-                    "{name} must rise, found {}° after {}°",
-                    next.value, previous.value
-                );
-                let hint =
-                    "check the counts of angles in the file's head, and the angles themselves";
+            if let Some(previous) = angles.last().filter(|previous| !(next.value > previous.value)) {
+                let message = format!("{name} must rise, found {}° after {}°", next.value, previous.value);
+                let hint = "check the counts of angles in the file's head, and the angles themselves";
                 return Err(Fault::new(next.line, message, hint));
             }
             angles.push(next);
@@ -106,21 +83,13 @@ impl<'a> Numbers<'a> {
     }
 
     /// The intensities of one plane times `factor`.
-    pub(super) fn plane(
-        &mut self,
-        name: &str,
-        gammas: &[Number],
-        factor: f64,
-    ) -> Result<Vec<f64>, Fault> {
+    pub(super) fn plane(&mut self, name: &str, gammas: &[Number], factor: f64) -> Result<Vec<f64>, Fault> {
         let mut plane = Vec::with_capacity(gammas.len());
         for gamma in gammas {
-            let intensity =
-                self.next(format_args!("the intensity at {name}, γ {}°", gamma.value))?;
+            let intensity = self.next(format_args!("the intensity at {name}, γ {}°", gamma.value))?;
             if intensity.value < 0.0 {
-                let message = format!(
-                    "the intensity at {name}, γ {}° is negative: {}",
-                    gamma.value, intensity.value
-                );
+                let message =
+                    format!("the intensity at {name}, γ {}° is negative: {}", gamma.value, intensity.value);
                 return Err(Fault::new(intensity.line, message, DAMAGED));
             }
             plane.push(intensity.value * factor);
@@ -148,11 +117,7 @@ pub(super) fn positive(number: Number, what: &str) -> Result<f64, Fault> {
     if number.value > 0.0 {
         return Ok(number.value);
     }
-    Err(Fault::new(
-        number.line,
-        format!("{what} is {}, expected a number > 0", number.value),
-        DAMAGED,
-    ))
+    Err(Fault::new(number.line, format!("{what} is {}, expected a number > 0", number.value), DAMAGED))
 }
 
 /// A count from `least` up.
@@ -189,10 +154,7 @@ mod tests {
         let values = [(); 3].map(|()| list.next("a number").expect("three numbers").value);
         assert!((values[1] - 5.0).abs() < 1e-12 && list.line == 2);
         let fault = list.next("a number").expect_err("no number");
-        assert_eq!(
-            (fault.line, fault.message.as_str()),
-            (4, "expected a number, found 'x'")
-        );
+        assert_eq!((fault.line, fault.message.as_str()), (4, "expected a number, found 'x'"));
         let mut list = Numbers::new(&lines, 1, Comma::DecimalPoint);
         assert!((list.next("a number").expect("1.5").value - 1.5).abs() < 1e-12);
     }
@@ -209,12 +171,7 @@ mod tests {
     #[test]
     fn angles_rise() {
         let lines = ["0 45", "40"];
-        let fault = Numbers::new(&lines, 0, Comma::Separator)
-            .angles("γ", 3)
-            .expect_err("falls");
-        assert_eq!(
-            (fault.line, fault.message.as_str()),
-            (2, "γ must rise, found 40° after 45°")
-        );
+        let fault = Numbers::new(&lines, 0, Comma::Separator).angles("γ", 3).expect_err("falls");
+        assert_eq!((fault.line, fault.message.as_str()), (2, "γ must rise, found 40° after 45°"));
     }
 }

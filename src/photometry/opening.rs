@@ -35,9 +35,7 @@ impl Opening {
     pub fn area_m2(&self) -> f64 {
         match *self {
             Self::Point => 0.0,
-            Self::Rect {
-                length_m, width_m, ..
-            } => length_m * width_m,
+            Self::Rect { length_m, width_m, .. } => length_m * width_m,
             Self::Disc { diameter_m, .. } => 0.25 * PI * diameter_m * diameter_m,
         }
     }
@@ -51,16 +49,10 @@ impl Opening {
         }
         let sides_m2 = match *self {
             Self::Point => 0.0,
-            Self::Rect {
-                length_m,
-                width_m,
-                side_x_m,
-                side_y_m,
-            } => width_m * side_x_m * direction.x.abs() + length_m * side_y_m * direction.y.abs(),
-            Self::Disc {
-                diameter_m,
-                height_m,
-            } => diameter_m * height_m * direction.x.hypot(direction.y),
+            Self::Rect { length_m, width_m, side_x_m, side_y_m } => {
+                width_m * side_x_m * direction.x.abs() + length_m * side_y_m * direction.y.abs()
+            }
+            Self::Disc { diameter_m, height_m } => diameter_m * height_m * direction.x.hypot(direction.y),
         };
         self.area_m2() * direction.z.abs() + sides_m2
     }
@@ -69,9 +61,7 @@ impl Opening {
     pub fn is_flat(&self) -> bool {
         match *self {
             Self::Point => true,
-            Self::Rect {
-                side_x_m, side_y_m, ..
-            } => !(side_x_m > 0.0 || side_y_m > 0.0),
+            Self::Rect { side_x_m, side_y_m, .. } => !(side_x_m > 0.0 || side_y_m > 0.0),
             Self::Disc { height_m, .. } => !(height_m > 0.0),
         }
     }
@@ -81,9 +71,9 @@ impl Opening {
     pub fn point(&self, u: [f64; 2]) -> DVec3 {
         match *self {
             Self::Point => DVec3::ZERO,
-            Self::Rect {
-                length_m, width_m, ..
-            } => DVec3::new((u[0] - 0.5) * length_m, (u[1] - 0.5) * width_m, 0.0),
+            Self::Rect { length_m, width_m, .. } => {
+                DVec3::new((u[0] - 0.5) * length_m, (u[1] - 0.5) * width_m, 0.0)
+            }
             Self::Disc { diameter_m, .. } => {
                 let radius_m = 0.5 * diameter_m * u[0].sqrt();
                 let (sin, cos) = (TAU * u[1]).sin_cos();
@@ -96,7 +86,9 @@ impl Opening {
     pub fn contains(&self, at: DVec3) -> bool {
         match *self {
             Self::Point => false,
-            Self::Rect { length_m, width_m, .. } => at.x.abs() <= 0.5 * length_m && at.y.abs() <= 0.5 * width_m,
+            Self::Rect { length_m, width_m, .. } => {
+                at.x.abs() <= 0.5 * length_m && at.y.abs() <= 0.5 * width_m
+            }
             Self::Disc { diameter_m, .. } => at.x.hypot(at.y) <= 0.5 * diameter_m,
         }
     }
@@ -111,13 +103,9 @@ impl Opening {
     pub fn outline(&self) -> Vec<DVec3> {
         match *self {
             Self::Point => Vec::new(),
-            Self::Rect {
-                length_m, width_m, ..
-            } => {
+            Self::Rect { length_m, width_m, .. } => {
                 let (x, y) = (0.5 * length_m, 0.5 * width_m);
-                [(x, y), (-x, y), (-x, -y), (x, -y)]
-                    .map(|(x, y)| DVec3::new(x, y, 0.0))
-                    .to_vec()
+                [(x, y), (-x, y), (-x, -y), (x, -y)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec()
             }
             Self::Disc { diameter_m, .. } => {
                 let corner = |k: i32| {
@@ -134,12 +122,7 @@ impl Opening {
 mod tests {
     use super::*;
 
-    const BATTEN: Opening = Opening::Rect {
-        length_m: 1.2,
-        width_m: 0.1,
-        side_x_m: 0.02,
-        side_y_m: 0.05,
-    };
+    const BATTEN: Opening = Opening::Rect { length_m: 1.2, width_m: 0.1, side_x_m: 0.02, side_y_m: 0.05 };
 
     /// Catches: length and width swapped, a side's height multiplied by its own edge.
     #[test]
@@ -148,10 +131,7 @@ mod tests {
         assert!((area(DVec3::NEG_Z) - 0.12).abs() < 1e-15);
         assert!((area(DVec3::X) - 0.1 * 0.02).abs() < 1e-15);
         assert!((area(DVec3::NEG_Y) - 1.2 * 0.05).abs() < 1e-15);
-        let disc = Opening::Disc {
-            diameter_m: 0.4,
-            height_m: 0.1,
-        };
+        let disc = Opening::Disc { diameter_m: 0.4, height_m: 0.1 };
         let oblique = DVec3::new(0.0, 0.6, -0.8);
         assert!((disc.projected_area_m2(oblique) - (PI * 0.04 * 0.8 + 0.04 * 0.6)).abs() < 1e-15);
     }
@@ -159,12 +139,7 @@ mod tests {
     /// Catches: a recessed panel that shines through the ceiling.
     #[test]
     fn flat_openings_are_dark_from_above() {
-        let flat = Opening::Rect {
-            length_m: 0.6,
-            width_m: 0.6,
-            side_x_m: 0.0,
-            side_y_m: 0.0,
-        };
+        let flat = Opening::Rect { length_m: 0.6, width_m: 0.6, side_x_m: 0.0, side_y_m: 0.0 };
         assert!(flat.projected_area_m2(DVec3::Z).abs() < 1e-300);
         assert!(BATTEN.projected_area_m2(DVec3::Z) > 0.1);
         assert!(Opening::Point.projected_area_m2(DVec3::NEG_Z).abs() < 1e-300);
@@ -173,15 +148,10 @@ mod tests {
     /// Catches: a disc sampled uniformly in radius (mean r² would be R²/3, not R²/2).
     #[test]
     fn points_are_uniform_by_area() {
-        let disc = Opening::Disc {
-            diameter_m: 2.0,
-            height_m: 0.0,
-        };
+        let disc = Opening::Disc { diameter_m: 2.0, height_m: 0.0 };
         let n = 64;
         let at = |k: i32| (f64::from(k) + 0.5) / f64::from(n);
-        let sum: f64 = (0..n * n)
-            .map(|k| disc.point([at(k / n), at(k % n)]).length_squared())
-            .sum();
+        let sum: f64 = (0..n * n).map(|k| disc.point([at(k / n), at(k % n)]).length_squared()).sum();
         assert!((sum / f64::from(n * n) - 0.5).abs() < 1e-12);
         assert!((BATTEN.point([0.0, 1.0]) - DVec3::new(-0.6, 0.05, 0.0)).length() < 1e-15);
     }
@@ -189,23 +159,10 @@ mod tests {
     /// Catches: a clockwise or missing corner.
     #[test]
     fn outline_encloses_the_area() {
-        for (opening, loss) in [
-            (BATTEN, 1e-12),
-            (
-                Opening::Disc {
-                    diameter_m: 1.0,
-                    height_m: 0.0,
-                },
-                0.0065,
-            ),
-        ] {
+        for (opening, loss) in [(BATTEN, 1e-12), (Opening::Disc { diameter_m: 1.0, height_m: 0.0 }, 0.0065)] {
             let corners = opening.outline();
             let next = corners.iter().cycle().skip(1);
-            let area: f64 = corners
-                .iter()
-                .zip(next)
-                .map(|(a, b)| 0.5 * a.cross(*b).z)
-                .sum();
+            let area: f64 = corners.iter().zip(next).map(|(a, b)| 0.5 * a.cross(*b).z).sum();
             assert!(area <= opening.area_m2() + 1e-12 && area >= opening.area_m2() * (1.0 - loss));
         }
     }

@@ -15,21 +15,10 @@ pub(super) struct Table {
 
 impl Table {
     /// Rising axes in degrees, cd\[azimuth\]\[γ\] row by row; `rotational` when all rows are equal.
-    pub(super) fn new(
-        azimuths_deg: Vec<f64>,
-        gammas_deg: Vec<f64>,
-        cd: Vec<f64>,
-        rotational: bool,
-    ) -> Self {
+    pub(super) fn new(azimuths_deg: Vec<f64>, gammas_deg: Vec<f64>, cd: Vec<f64>, rotational: bool) -> Self {
         let emission = EmissionCdf::new(&azimuths_deg, &gammas_deg, &cd);
         let (azimuths, gammas) = (Axis::new(azimuths_deg), Axis::new(gammas_deg));
-        Self {
-            azimuths,
-            gammas,
-            cd,
-            rotational,
-            emission,
-        }
+        Self { azimuths, gammas, cd, rotational, emission }
     }
 
     pub(super) fn flux(&self) -> f64 {
@@ -75,18 +64,10 @@ impl Table {
             }
             sum
         };
-        let integrals: Vec<f64> = (0..self.azimuths.values.len())
-            .map(plane_integral)
-            .collect();
-        let wedge = |(azimuth, i): (&[f64], &[f64])| {
-            (azimuth[1] - azimuth[0]).to_radians() * 0.5 * (i[0] + i[1])
-        };
-        self.azimuths
-            .values
-            .windows(2)
-            .zip(integrals.windows(2))
-            .map(wedge)
-            .sum()
+        let integrals: Vec<f64> = (0..self.azimuths.values.len()).map(plane_integral).collect();
+        let wedge =
+            |(azimuth, i): (&[f64], &[f64])| (azimuth[1] - azimuth[0]).to_radians() * 0.5 * (i[0] + i[1]);
+        self.azimuths.values.windows(2).zip(integrals.windows(2)).map(wedge).sum()
     }
 
     /// (azimuth in rad, γ in rad, cd there). γ first from its marginal in the drawn cell, then
@@ -95,12 +76,8 @@ impl Table {
         let columns = self.gammas.values.len();
         let (i, u) = self.emission.draw_band(u);
         let (j, v) = self.emission.draw_wedge(i, v);
-        let [here, next] = [j, j + 1].map(|plane| {
-            [
-                self.cd[plane * columns + i],
-                self.cd[plane * columns + i + 1],
-            ]
-        });
+        let [here, next] =
+            [j, j + 1].map(|plane| [self.cd[plane * columns + i], self.cd[plane * columns + i + 1]]);
         let [g0, g1] = [i, i + 1].map(|i| self.gammas.values[i].to_radians());
         let t = invert_segment(here[0] + next[0], here[1] + next[1], g0, g1, u);
         let a = here[0] + t * (here[1] - here[0]);
@@ -108,11 +85,7 @@ impl Table {
         // ∫₀ˢ a + (b − a)s' ds' = v (a + b)/2, solved in the form that is stable for a = b.
         let s = (v * (a + b) / (a + (a * a + v * (b * b - a * a)).max(0.0).sqrt())).clamp(0.0, 1.0);
         let [phi0, phi1] = [j, j + 1].map(|j| self.azimuths.values[j].to_radians());
-        (
-            phi0 + s * (phi1 - phi0),
-            g0 + t * (g1 - g0),
-            a + s * (b - a),
-        )
+        (phi0 + s * (phi1 - phi0), g0 + t * (g1 - g0), a + s * (b - a))
     }
 }
 
@@ -129,10 +102,7 @@ impl Axis {
         let step = (last - first) / (values.len() - 1) as f64;
         let on_step = |(k, value): (usize, &f64)| (value - first - step * k as f64).abs() < 1e-9;
         let uniform = values.iter().enumerate().all(on_step);
-        Self {
-            cells_per_degree: uniform.then(|| 1.0 / step),
-            values,
-        }
+        Self { cells_per_degree: uniform.then(|| 1.0 / step), values }
     }
 
     /// The cell that holds `at`, and the position 0 … 1 within it.
@@ -148,14 +118,8 @@ impl Axis {
             let cell = (x as usize).min(values.len() - 2);
             return Some((cell, (x - cell as f64).min(1.0)));
         }
-        let cell = values
-            .partition_point(|value| *value <= at)
-            .clamp(1, values.len() - 1)
-            - 1;
-        Some((
-            cell,
-            (at - values[cell]) / (values[cell + 1] - values[cell]),
-        ))
+        let cell = values.partition_point(|value| *value <= at).clamp(1, values.len() - 1) - 1;
+        Some((cell, (at - values[cell]) / (values[cell + 1] - values[cell])))
     }
 }
 
@@ -172,17 +136,12 @@ mod tests {
     #[test]
     fn uniform_and_searched_cells_agree() {
         let fast = Axis::new((0..=72).map(|k| f64::from(k) * 2.5).collect());
-        let slow = Axis {
-            values: fast.values.clone(),
-            cells_per_degree: None,
-        };
+        let slow = Axis { values: fast.values.clone(), cells_per_degree: None };
         assert!(fast.cells_per_degree.is_some());
         for k in 0..=1800 {
             let at = f64::from(k) * 0.1;
             let position = |axis: &Axis| axis.locate(at).map(|(cell, t)| cell as f64 + t);
-            assert!(
-                (position(&fast).expect("inside") - position(&slow).expect("inside")).abs() < 1e-9
-            );
+            assert!((position(&fast).expect("inside") - position(&slow).expect("inside")).abs() < 1e-9);
         }
         assert_eq!(fast.locate(180.1), None);
     }

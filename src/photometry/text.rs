@@ -14,25 +14,18 @@ pub(super) fn decode(bytes: &[u8]) -> String {
         },
     };
     // U+001A ends text files of DOS programs.
-    text.replace("\r\n", "\n")
-        .replace('\r', "\n")
-        .replace('\u{1a}', " ")
+    text.replace("\r\n", "\n").replace('\r', "\n").replace('\u{1a}', " ")
 }
 
 fn from_utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
     let units = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
-    char::decode_utf16(units)
-        .map(|unit| unit.unwrap_or(char::REPLACEMENT_CHARACTER))
-        .collect()
+    char::decode_utf16(units).map(|unit| unit.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
 }
 
 /// Cyrillic words are runs of letters above 0xC0; in Latin-1 such letters stand alone.
 fn is_cyrillic(bytes: &[u8]) -> bool {
     let high = bytes.iter().filter(|byte| **byte >= 0x80).count();
-    let in_runs = bytes
-        .windows(2)
-        .filter(|pair| pair[0] >= 0xC0 && pair[1] >= 0xC0)
-        .count();
+    let in_runs = bytes.windows(2).filter(|pair| pair[0] >= 0xC0 && pair[1] >= 0xC0).count();
     2 * in_runs > high
 }
 
@@ -53,14 +46,8 @@ mod tests {
     /// Catches: Cyrillic names printed as Latin-1, umlauts printed as Cyrillic, lost line ends.
     #[test]
     fn encodings_are_told_apart() {
-        assert_eq!(
-            decode(b"\xD1\xE2\xE5\xF2\xE8\xEB\xFC\xED\xE8\xEA \xB9 5\r\n"),
-            "Светильник № 5\n"
-        );
-        assert_eq!(
-            decode(b"Str\xE4hler f\xFCr B\xFCro\rA"),
-            "Strähler für Büro\nA"
-        );
+        assert_eq!(decode(b"\xD1\xE2\xE5\xF2\xE8\xEB\xFC\xED\xE8\xEA \xB9 5\r\n"), "Светильник № 5\n");
+        assert_eq!(decode(b"Str\xE4hler f\xFCr B\xFCro\rA"), "Strähler für Büro\nA");
         assert_eq!(decode("\u{feff}Büro".as_bytes()), "Büro");
         assert_eq!(decode(b"\xFF\xFEA\0\n\0B\0"), "A\nB");
     }

@@ -43,7 +43,11 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
         }
         let hidden = grid.points.iter().filter(|p| p.excluded == Some(Exclusion::InsideFurniture)).count();
         if hidden > 0 {
-            plan.reasons.push(format!("Area \"{}\": {hidden} of {} points lie inside furniture and are left out.", spec.name, grid.points.len()));
+            plan.reasons.push(format!(
+                "Area \"{}\": {hidden} of {} points lie inside furniture and are left out.",
+                spec.name,
+                grid.points.len()
+            ));
         }
         let wanted = quantities(project, world, spec, index, &grid);
         let quantities = ask(plan, &grid, &wanted);
@@ -93,8 +97,18 @@ fn norm_areas(project: &Project, room: &Room, index: usize) -> Vec<AreaSpec> {
     let border_m = if narrow > 3.0 * application.border_m.value { application.border_m.value } else { 0.0 };
     let mut areas = vec![
         spec("working plane", AreaKind::Task, AreaShape::Polygon(flat(plane_m)), border_m),
-        spec("volume", AreaKind::Volume, AreaShape::Polygon(flat(application.eye_height_seated_m.value)), border_m),
-        spec("ceiling", AreaKind::Surface, AreaShape::Polygon(flat(room.height_m).into_iter().rev().collect()), 0.0),
+        spec(
+            "volume",
+            AreaKind::Volume,
+            AreaShape::Polygon(flat(application.eye_height_seated_m.value)),
+            border_m,
+        ),
+        spec(
+            "ceiling",
+            AreaKind::Surface,
+            AreaShape::Polygon(flat(room.height_m).into_iter().rev().collect()),
+            0.0,
+        ),
     ];
     let count = room.footprint.len();
     for (number, &a) in room.footprint.iter().enumerate() {
@@ -107,7 +121,8 @@ fn norm_areas(project: &Project, room: &Room, index: usize) -> Vec<AreaSpec> {
 }
 
 fn narrowest(footprint: &[DVec2]) -> f64 {
-    let (lo, hi) = footprint.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let (lo, hi) =
+        footprint.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     (hi - lo).min_element()
 }
 
@@ -130,7 +145,9 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene) -> Result<Grid, grid::GridEr
         AreaShape::Polygon(corners) => {
             let normal = polygon_normal(corners);
             let top = room.floor_m + room.height_m;
-            let ceiling = spec.kind == AreaKind::Surface && normal.z < -0.99 && corners.iter().all(|p| (p.z - top).abs() < SNAP_M);
+            let ceiling = spec.kind == AreaKind::Surface
+                && normal.z < -0.99
+                && corners.iter().all(|p| (p.z - top).abs() < SNAP_M);
             let normal = if normal.z.abs() > 0.99 && !ceiling { DVec3::Z } else { normal };
             let grid = grid::polygon(corners, normal, spec.rule, spec.border_m)?;
             Ok(if spec.kind == AreaKind::Surface { snapped(grid, scene) } else { grid })
@@ -273,13 +290,16 @@ fn quantities(project: &Project, world: &World, spec: &AreaSpec, index: usize, g
 /// Adds the receivers and rays of a grid. Planar quantities get receivers of their own; kernels
 /// that look all around share one.
 fn ask(plan: &mut Plan, grid: &Grid, wanted: &[Quantity]) -> Vec<PlannedQuantity> {
-    let mut planned: Vec<PlannedQuantity> =
-        wanted.iter().map(|&quantity| PlannedQuantity { quantity, rows: vec![None; grid.points.len()] }).collect();
+    let mut planned: Vec<PlannedQuantity> = wanted
+        .iter()
+        .map(|&quantity| PlannedQuantity { quantity, rows: vec![None; grid.points.len()] })
+        .collect();
     let open = |index: usize| grid.points[index].excluded.is_none();
     for entry in &mut planned {
         for (index, point) in grid.points.iter().enumerate().filter(|&(index, _)| open(index)) {
             let lift = point.normal;
-            let mut one = |kernel: Kernel| plan.ask(Receiver { point: point.position, lift, kernels: vec![kernel] });
+            let mut one =
+                |kernel: Kernel| plan.ask(Receiver { point: point.position, lift, kernels: vec![kernel] });
             let rows = match entry.quantity {
                 Quantity::Modelling => {
                     let cylinder = one(Kernel::Cylindrical { axis: DVec3::Z });
@@ -308,7 +328,8 @@ const RAY: usize = 1 << (usize::BITS - 1);
 pub(super) fn number_rays(plan: &mut Plan) {
     let kernels = plan.demand.rows() - plan.demand.rays.len();
     let areas = plan.rooms.iter_mut().flat_map(|room| &mut room.areas);
-    for rows in areas.flat_map(|area| &mut area.quantities).flat_map(|entry| entry.rows.iter_mut().flatten()) {
+    for rows in areas.flat_map(|area| &mut area.quantities).flat_map(|entry| entry.rows.iter_mut().flatten())
+    {
         if let Rows::One(row) = rows
             && *row & RAY != 0
         {

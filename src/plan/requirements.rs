@@ -34,14 +34,20 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
 }
 
 /// Room, subject and printed name of a `[[require]]`.
-fn subject(world: &World, plan: &Plan, requirement: &crate::project::CustomRequirement) -> (usize, Subject, String) {
+fn subject(
+    world: &World,
+    plan: &Plan,
+    requirement: &crate::project::CustomRequirement,
+) -> (usize, Subject, String) {
     match requirement.subject {
         CustomSubject::Area(area) => {
             let spec = &world.areas[area];
-            let found = plan.rooms[spec.room].areas.iter().enumerate().find(|(_, planned)| planned.name == spec.name);
+            let found =
+                plan.rooms[spec.room].areas.iter().enumerate().find(|(_, planned)| planned.name == spec.name);
             let subject = found
                 .and_then(|(place, planned)| {
-                    let entry = planned.quantities.iter().position(|entry| entry.quantity == requirement.quantity)?;
+                    let entry =
+                        planned.quantities.iter().position(|entry| entry.quantity == requirement.quantity)?;
                     Some(Subject::Area(place, entry))
                 })
                 .unwrap_or_else(|| Subject::Missing("this quantity is not measured on an area".into()));
@@ -93,7 +99,9 @@ fn of_norm(
         let subject = match (limit.zone, limit.quantity) {
             (Zone::Room, Quantity::Ugr) => Subject::UgrTable(standard.application.ugr_shr.value),
             (Zone::Declared, Quantity::ColourRendering) => Subject::ColourRendering,
-            (Zone::Room | Zone::Declared, _) => Subject::Missing("gershun does not compute this quantity".into()),
+            (Zone::Room | Zone::Declared, _) => {
+                Subject::Missing("gershun does not compute this quantity".into())
+            }
             (zone, _) if !has_zone(room, planned, zone) && limit.statistic == Statistic::Mean => {
                 Subject::Missing(format!("the project lists no {} in this room", zone_name(zone)))
             }

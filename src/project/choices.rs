@@ -106,37 +106,27 @@ choice!(Factor, "a factor or { llmf, lsf, lmf }", {
     }
 });
 
-choice!(
-    OpeningChoice,
-    "\"file\", { rect = [length, width] } or { disc = diameter }",
-    {
-        fn visit_str<E: Error>(self, value: &str) -> Result<OpeningChoice, E> {
-            match value {
-                "file" => Ok(OpeningChoice::File),
-                _ => Err(E::invalid_value(de::Unexpected::Str(value), &self)),
-            }
-        }
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OpeningChoice, A::Error> {
-            #[derive(Deserialize)]
-            #[serde(deny_unknown_fields)]
-            struct Shape {
-                rect: Option<[f64; 2]>,
-                disc: Option<f64>,
-            }
-            match Shape::deserialize(MapAccessDeserializer::new(map))? {
-                Shape {
-                    rect: Some(rect),
-                    disc: None,
-                } => Ok(OpeningChoice::Rect(rect)),
-                Shape {
-                    rect: None,
-                    disc: Some(disc),
-                } => Ok(OpeningChoice::Disc(disc)),
-                Shape { .. } => Err(A::Error::custom("give either `rect` or `disc`")),
-            }
+choice!(OpeningChoice, "\"file\", { rect = [length, width] } or { disc = diameter }", {
+    fn visit_str<E: Error>(self, value: &str) -> Result<OpeningChoice, E> {
+        match value {
+            "file" => Ok(OpeningChoice::File),
+            _ => Err(E::invalid_value(de::Unexpected::Str(value), &self)),
         }
     }
-);
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OpeningChoice, A::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Shape {
+            rect: Option<[f64; 2]>,
+            disc: Option<f64>,
+        }
+        match Shape::deserialize(MapAccessDeserializer::new(map))? {
+            Shape { rect: Some(rect), disc: None } => Ok(OpeningChoice::Rect(rect)),
+            Shape { rect: None, disc: Some(disc) } => Ok(OpeningChoice::Disc(disc)),
+            Shape { .. } => Err(A::Error::custom("give either `rect` or `disc`")),
+        }
+    }
+});
 
 choice!(AreaGrid, "\"en\", { step } or { count = [n, m] }", {
     fn visit_str<E: Error>(self, value: &str) -> Result<AreaGrid, E> {
@@ -153,52 +143,36 @@ choice!(AreaGrid, "\"en\", { step } or { count = [n, m] }", {
             count: Option<[usize; 2]>,
         }
         match Rule::deserialize(MapAccessDeserializer::new(map))? {
-            Rule {
-                step: Some(step),
-                count: None,
-            } => Ok(AreaGrid::Step(step)),
-            Rule {
-                step: None,
-                count: Some(count),
-            } => Ok(AreaGrid::Count(count)),
+            Rule { step: Some(step), count: None } => Ok(AreaGrid::Step(step)),
+            Rule { step: None, count: Some(count) } => Ok(AreaGrid::Count(count)),
             Rule { .. } => Err(A::Error::custom("give either `step` or `count`")),
         }
     }
 });
 
-choice!(
-    GoalChoice,
-    "\"verdict\", { relative } or { time = \"2m\" }",
-    {
-        fn visit_str<E: Error>(self, value: &str) -> Result<GoalChoice, E> {
-            match value {
-                "verdict" => Ok(GoalChoice::Verdict),
-                _ => Err(E::invalid_value(de::Unexpected::Str(value), &self)),
-            }
-        }
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<GoalChoice, A::Error> {
-            #[derive(Deserialize)]
-            #[serde(deny_unknown_fields)]
-            struct Goal {
-                relative: Option<f64>,
-                time: Option<String>,
-            }
-            match Goal::deserialize(MapAccessDeserializer::new(map))? {
-                Goal {
-                    relative: Some(relative),
-                    time: None,
-                } => Ok(GoalChoice::Relative(relative)),
-                Goal {
-                    relative: None,
-                    time: Some(time),
-                } => seconds(&time).map(GoalChoice::Time).ok_or_else(|| {
-                    A::Error::custom("a time is written like \"30s\", \"2m\", \"1h\"")
-                }),
-                Goal { .. } => Err(A::Error::custom("give either `relative` or `time`")),
-            }
+choice!(GoalChoice, "\"verdict\", { relative } or { time = \"2m\" }", {
+    fn visit_str<E: Error>(self, value: &str) -> Result<GoalChoice, E> {
+        match value {
+            "verdict" => Ok(GoalChoice::Verdict),
+            _ => Err(E::invalid_value(de::Unexpected::Str(value), &self)),
         }
     }
-);
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<GoalChoice, A::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Goal {
+            relative: Option<f64>,
+            time: Option<String>,
+        }
+        match Goal::deserialize(MapAccessDeserializer::new(map))? {
+            Goal { relative: Some(relative), time: None } => Ok(GoalChoice::Relative(relative)),
+            Goal { relative: None, time: Some(time) } => seconds(&time)
+                .map(GoalChoice::Time)
+                .ok_or_else(|| A::Error::custom("a time is written like \"30s\", \"2m\", \"1h\"")),
+            Goal { .. } => Err(A::Error::custom("give either `relative` or `time`")),
+        }
+    }
+});
 
 choice!(TextOrDate, "a text or a date", {
     fn visit_str<E: Error>(self, value: &str) -> Result<TextOrDate, E> {
@@ -224,11 +198,8 @@ impl<'de, T: Deserialize<'de> + Element> Deserialize<'de> for OneOrTwo<T> {
                     .ok_or_else(|| E::invalid_value(de::Unexpected::Signed(value), &self))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<OneOrTwo<T>, A::Error> {
-                let values =
-                    T::from_list(Vec::<Item>::deserialize(SeqAccessDeserializer::new(seq))?);
-                values
-                    .map(OneOrTwo)
-                    .ok_or_else(|| A::Error::custom(format!("expected {}", T::EXPECTING)))
+                let values = T::from_list(Vec::<Item>::deserialize(SeqAccessDeserializer::new(seq))?);
+                values.map(OneOrTwo).ok_or_else(|| A::Error::custom(format!("expected {}", T::EXPECTING)))
             }
         }
         deserializer.deserialize_any(Choice(PhantomData))
@@ -273,9 +244,7 @@ impl Element for u32 {
         let counts: Option<Vec<Self>> = items
             .into_iter()
             .map(|item| match item {
-                Item::Number(n) if n >= 0.0 && n <= f64::from(u32::MAX) && n.fract() == 0.0 => {
-                    Some(n as u32)
-                }
+                Item::Number(n) if n >= 0.0 && n <= f64::from(u32::MAX) && n.fract() == 0.0 => Some(n as u32),
                 Item::Number(_) | Item::Vector(_) => None,
             })
             .collect();

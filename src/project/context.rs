@@ -38,13 +38,8 @@ pub struct Context {
 impl Context {
     /// Reports a mistake at a place of the project file.
     pub fn error(&mut self, span: &Range<usize>, message: impl Into<String>, hint: &str) {
-        let diagnostic = Diagnostic::at(
-            &self.file,
-            &self.text,
-            span.clone(),
-            message.into(),
-            hint.to_owned(),
-        );
+        let diagnostic =
+            Diagnostic::at(&self.file, &self.text, span.clone(), message.into(), hint.to_owned());
         if !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
@@ -52,19 +47,9 @@ impl Context {
 
     /// Reports a mistake in a line of another file.
     pub fn error_in(&mut self, file: &str, text: &str, line: usize, message: String, hint: &str) {
-        let start: usize = text
-            .split_inclusive('\n')
-            .take(line.saturating_sub(1))
-            .map(str::len)
-            .sum();
+        let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
         let length = text[start..].lines().next().map_or(0, str::len);
-        self.diagnostics.push(Diagnostic::at(
-            file,
-            text,
-            start..start + length,
-            message,
-            hint.to_owned(),
-        ));
+        self.diagnostics.push(Diagnostic::at(file, text, start..start + length, message, hint.to_owned()));
     }
 
     /// Notes something ignored or approximated.
@@ -99,10 +84,8 @@ impl Context {
 
     /// Reads a file relative to the project's folder and records its hash; errors are (message, hint).
     pub fn read_path(&mut self, path: &str, limit: u64) -> Result<Vec<u8>, (String, &'static str)> {
-        let outside = (
-            format!("\"{path}\" lies outside the project's folder"),
-            "--allow-outside permits that",
-        );
+        let outside =
+            (format!("\"{path}\" lies outside the project's folder"), "--allow-outside permits that");
         let climbs = Path::new(path)
             .components()
             .any(|part| !matches!(part, Component::Normal(_) | Component::CurDir));
@@ -110,11 +93,7 @@ impl Context {
             return Err(outside);
         }
         let cannot = |error: &std::io::Error| (format!("cannot read \"{path}\": {error}"), "");
-        let full = self
-            .folder
-            .join(path)
-            .canonicalize()
-            .map_err(|error| cannot(&error))?;
+        let full = self.folder.join(path).canonicalize().map_err(|error| cannot(&error))?;
         if !self.allow_outside && !full.starts_with(&self.folder) {
             return Err(outside);
         }
@@ -141,10 +120,7 @@ impl Context {
         for byte in Sha256::digest(bytes) {
             write!(sha256, "{byte:02x}").expect("a String takes everything");
         }
-        self.inputs.push(InputFile {
-            path: path.to_owned(),
-            sha256,
-        });
+        self.inputs.push(InputFile { path: path.to_owned(), sha256 });
     }
 
     /// A number within a closed range; NaN is outside of every range.
@@ -154,10 +130,7 @@ impl Context {
             let message = if high.is_infinite() {
                 format!("{what} must be at least {low}, found {}", value.get_ref())
             } else {
-                format!(
-                    "{what} must lie in {low} … {high}, found {}",
-                    value.get_ref()
-                )
+                format!("{what} must lie in {low} … {high}, found {}", value.get_ref())
             };
             self.error(&value.span(), message, "");
         }
@@ -168,11 +141,7 @@ impl Context {
     pub fn positive(&mut self, value: f64, span: &Range<usize>, what: &str) -> bool {
         let ok = value > 0.0 && value.is_finite();
         if !ok {
-            self.error(
-                span,
-                format!("{what} must be greater than 0, found {value}"),
-                "",
-            );
+            self.error(span, format!("{what} must be greater than 0, found {value}"), "");
         }
         ok
     }

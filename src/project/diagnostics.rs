@@ -136,28 +136,16 @@ mod tests {
     fn the_caret_stands_under_the_word_even_after_umlauts() {
         let text = "a = 1\nö = \"über\" # x\n";
         let start = text.find("\"ü").unwrap();
-        let diagnostic = Diagnostic::at(
-            "p.toml",
-            text,
-            start..start + "\"über\"".len(),
-            "no".into(),
-            "try".into(),
-        );
-        let expected =
-            "error: no\n --> p.toml:2:5\n  |\n2 | ö = \"über\" # x\n  |     ^^^^^^\n  = hint: try";
+        let diagnostic =
+            Diagnostic::at("p.toml", text, start..start + "\"über\"".len(), "no".into(), "try".into());
+        let expected = "error: no\n --> p.toml:2:5\n  |\n2 | ö = \"über\" # x\n  |     ^^^^^^\n  = hint: try";
         assert_eq!(diagnostic.to_string(), expected);
     }
 
     #[test]
     fn near_names_are_suggested_and_far_ones_listed() {
-        assert_eq!(
-            suggestion("flor", ["floor", "walls"]),
-            "did you mean \"floor\"?"
-        );
-        assert_eq!(
-            suggestion("zzz", ["floor", "walls"]),
-            "there is: floor, walls"
-        );
+        assert_eq!(suggestion("flor", ["floor", "walls"]), "did you mean \"floor\"?");
+        assert_eq!(suggestion("zzz", ["floor", "walls"]), "there is: floor, walls");
         assert_eq!(suggestion("zzz", []), "");
     }
 }

@@ -34,34 +34,22 @@ pub struct LoadOptions {
 /// # Errors
 /// All mistakes of the project, in the order of the file.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Project, Vec<Diagnostic>> {
-    let path = if path.is_dir() {
-        path.join("project.toml")
-    } else {
-        path.to_owned()
-    };
+    let path = if path.is_dir() { path.join("project.toml") } else { path.to_owned() };
     let shown = path.display().to_string();
     let unreadable = |what: String| {
-        vec![Diagnostic::file(
-            &shown,
-            what,
-            "a project is a project.toml or its folder".to_owned(),
-        )]
+        vec![Diagnostic::file(&shown, what, "a project is a project.toml or its folder".to_owned())]
     };
-    let full = path
-        .canonicalize()
-        .map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
-    let metadata = full
-        .metadata()
-        .map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
+    let full =
+        path.canonicalize().map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
+    let metadata =
+        full.metadata().map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
     if !metadata.is_file() || metadata.len() > context::SMALL_FILE {
-        return Err(unreadable(
-            "the project is not a file of at most 64 MiB".to_owned(),
-        ));
+        return Err(unreadable("the project is not a file of at most 64 MiB".to_owned()));
     }
-    let bytes = std::fs::read(&full)
-        .map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_| unreadable("the project file is not UTF-8 text".to_owned()))?;
+    let bytes =
+        std::fs::read(&full).map_err(|error| unreadable(format!("cannot read the project: {error}")))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| unreadable("the project file is not UTF-8 text".to_owned()))?;
     let folder = full.parent().unwrap_or(Path::new("/")).to_owned();
     let mut context = context::Context {
         folder,
@@ -72,9 +60,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Project, Vec<Diagnosti
         inputs: Vec::new(),
         allow_outside: options.allow_outside,
     };
-    let name = full
-        .file_name()
-        .map_or("project.toml".into(), |name| name.to_string_lossy());
+    let name = full.file_name().map_or("project.toml".into(), |name| name.to_string_lossy());
     let text = context.text.clone();
     context.record(&name, text.as_bytes());
     let file = read::read(&text, &mut context);
@@ -296,10 +282,9 @@ impl LightScene {
     pub fn factor(&self, group: &str) -> f64 {
         match &self.factors {
             None => 1.0,
-            Some(factors) => factors
-                .iter()
-                .find(|(name, _)| name == group)
-                .map_or(0.0, |(_, factor)| *factor),
+            Some(factors) => {
+                factors.iter().find(|(name, _)| name == group).map_or(0.0, |(_, factor)| *factor)
+            }
         }
     }
 }

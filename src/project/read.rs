@@ -114,16 +114,9 @@ fn named<T: DeserializeOwned>(value: Value<'_>, context: &mut Context) -> Vec<Na
         .collect()
 }
 
-fn list<T: DeserializeOwned>(
-    value: Value<'_>,
-    key: &Range<usize>,
-    context: &mut Context,
-) -> Vec<At<T>> {
+fn list<T: DeserializeOwned>(value: Value<'_>, key: &Range<usize>, context: &mut Context) -> Vec<At<T>> {
     match value.into_inner() {
-        DeValue::Array(items) => items
-            .into_iter()
-            .filter_map(|item| spanned(item, context))
-            .collect(),
+        DeValue::Array(items) => items.into_iter().filter_map(|item| spanned(item, context)).collect(),
         DeValue::Table(_) => {
             let message = "this section is a list".to_owned();
             context.error(key, message, "write it with double brackets: [[…]]");
@@ -176,13 +169,9 @@ fn remove_key(value: &mut DeValue<'_>, place: &Range<usize>) -> bool {
                 table.remove(&key);
                 return true;
             }
-            table
-                .iter_mut()
-                .any(|(_, inner)| remove_key(inner.get_mut(), place))
+            table.iter_mut().any(|(_, inner)| remove_key(inner.get_mut(), place))
         }
-        DeValue::Array(items) => items
-            .iter_mut()
-            .any(|inner| remove_key(inner.get_mut(), place)),
+        DeValue::Array(items) => items.iter_mut().any(|inner| remove_key(inner.get_mut(), place)),
         DeValue::String(_)
         | DeValue::Integer(_)
         | DeValue::Float(_)
@@ -195,11 +184,7 @@ fn remove_key(value: &mut DeValue<'_>, place: &Range<usize>) -> bool {
 fn explain(message: &str) -> (String, String) {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     if let (Some(rest), [wrong, known @ ..]) = (message.strip_prefix("unknown "), &quoted[..]) {
-        let what = if rest.starts_with("field") {
-            "key"
-        } else {
-            "value"
-        };
+        let what = if rest.starts_with("field") { "key" } else { "value" };
         let hint = suggestion(wrong, known.iter().copied());
         return (format!("unknown {what} \"{wrong}\""), hint);
     }

@@ -4,9 +4,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::choices::{
-    AreaGrid, Factor, GoalChoice, OneOrTwo, OpeningChoice, Surfacing, TextOrDate,
-};
+use super::choices::{AreaGrid, Factor, GoalChoice, OneOrTwo, OpeningChoice, Surfacing, TextOrDate};
 
 /// Numbers and names with their place.
 pub type At<T> = Spanned<T>;

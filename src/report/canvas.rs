@@ -77,10 +77,7 @@ fn style(colour: Rgb, opacity: f64, width_px: f64) -> ShapeStyle {
 impl Canvas {
     /// An empty drawing.
     pub fn new(width_px: f64, height_px: f64) -> Self {
-        Self {
-            body: String::new(),
-            size: (unit(width_px) as u32, unit(height_px) as u32),
-        }
+        Self { body: String::new(), size: (unit(width_px) as u32, unit(height_px) as u32) }
     }
 
     fn ink<E: std::fmt::Debug>(&mut self, draw: impl FnOnce(&mut SVGBackend<'_>) -> Result<(), E>) {
@@ -88,10 +85,7 @@ impl Canvas {
         let mut backend = SVGBackend::with_string(&mut buffer, self.size);
         draw(&mut backend).expect("drawing into a string cannot fail");
         drop(backend);
-        let inner = buffer
-            .split_once('\n')
-            .map_or("", |(_, inner)| inner)
-            .trim_end();
+        let inner = buffer.split_once('\n').map_or("", |(_, inner)| inner).trim_end();
         let inner = inner.strip_suffix("</svg>").unwrap_or(inner);
         // A name cannot hold these: its quotes are escaped.
         self.body.push_str(
@@ -105,10 +99,7 @@ impl Canvas {
     /// A line through places.
     pub fn line(&mut self, places: &[Px], colour: Rgb, width_px: f64) {
         self.ink(|backend| {
-            backend.draw_path(
-                places.iter().copied().map(coord),
-                &style(colour, 1.0, width_px),
-            )
+            backend.draw_path(places.iter().copied().map(coord), &style(colour, 1.0, width_px))
         });
     }
 
@@ -121,29 +112,19 @@ impl Canvas {
     /// A filled polygon.
     pub fn polygon(&mut self, places: &[Px], colour: Rgb, opacity: f64) {
         self.ink(|backend| {
-            backend.fill_polygon(
-                places.iter().copied().map(coord),
-                &style(colour, opacity, 1.0),
-            )
+            backend.fill_polygon(places.iter().copied().map(coord), &style(colour, opacity, 1.0))
         });
     }
 
     /// A filled rectangle.
     pub fn rectangle(&mut self, from: Px, to: Px, colour: Rgb, opacity: f64) {
-        self.ink(|backend| {
-            backend.draw_rect(coord(from), coord(to), &style(colour, opacity, 1.0), true)
-        });
+        self.ink(|backend| backend.draw_rect(coord(from), coord(to), &style(colour, opacity, 1.0), true));
     }
 
     /// A circle, filled or not.
     pub fn circle(&mut self, centre: Px, radius_px: f64, colour: Rgb, fill: bool) {
         self.ink(|backend| {
-            backend.draw_circle(
-                coord(centre),
-                unit(radius_px) as u32,
-                &style(colour, 1.0, 1.2),
-                fill,
-            )
+            backend.draw_circle(coord(centre), unit(radius_px) as u32, &style(colour, 1.0, 1.2), fill)
         });
     }
 
@@ -162,9 +143,7 @@ impl Canvas {
             Anchor::End => HPos::Right,
         };
         let colour = RGBColor(r, g, b);
-        let style = TextStyle::from(font)
-            .color(&colour)
-            .pos(Pos::new(side, VPos::Center));
+        let style = TextStyle::from(font).color(&colour).pos(Pos::new(side, VPos::Center));
         self.ink(|backend| backend.draw_text(&xml::printable(text), &style, coord(place)));
     }
 
@@ -175,9 +154,7 @@ impl Canvas {
         if !data.is_empty() {
             put(
                 &mut self.body,
-                format_args!(
-                    "<path fill=\"#{r:02X}{g:02X}{b:02X}\" fill-rule=\"evenodd\" d=\"{data}\"/>\n"
-                ),
+                format_args!("<path fill=\"#{r:02X}{g:02X}{b:02X}\" fill-rule=\"evenodd\" d=\"{data}\"/>\n"),
             );
         }
     }
@@ -217,8 +194,7 @@ impl Canvas {
     /// The drawing as one SVG element.
     pub fn finish(self, title: &str) -> String {
         let (width, height) = self.size;
-        let (shown_width, shown_height) =
-            (f64::from(width) / FINENESS, f64::from(height) / FINENESS);
+        let (shown_width, shown_height) = (f64::from(width) / FINENESS, f64::from(height) / FINENESS);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{shown_width}\" height=\"{shown_height}\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" role=\"img\">\n<title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#FFFFFF\"/>\n{}</svg>\n",
             xml::escape(title),
@@ -232,10 +208,7 @@ fn path_data<'a>(lines: impl Iterator<Item = &'a [Px]>, end: &str) -> String {
     for line in lines {
         for (index, place) in line.iter().enumerate() {
             let (x, y) = coord(*place);
-            put(
-                &mut data,
-                format_args!("{}{x} {y}", if index == 0 { "M" } else { "L" }),
-            );
+            put(&mut data, format_args!("{}{x} {y}", if index == 0 { "M" } else { "L" }));
         }
         data.push_str(end);
     }

@@ -16,10 +16,7 @@ pub enum Dialect {
 }
 
 /// File names and contents of all tables that have rows.
-pub(super) fn tables(
-    outcome: &Outcome,
-    dialect: Dialect,
-) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+pub(super) fn tables(outcome: &Outcome, dialect: Dialect) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let all = [
         ("check.csv", check(outcome, dialect)?),
         ("points.csv", points(outcome, dialect)?),
@@ -55,34 +52,21 @@ impl Table {
         if dialect == Dialect::Excel {
             start.extend_from_slice("\u{feff}".as_bytes());
         }
-        let mut writer = csv::WriterBuilder::new()
-            .delimiter(delimiter)
-            .from_writer(start);
+        let mut writer = csv::WriterBuilder::new().delimiter(delimiter).from_writer(start);
         writer.write_record(header)?;
-        Ok(Self {
-            writer,
-            dialect,
-            rows: 0,
-        })
+        Ok(Self { writer, dialect, rows: 0 })
     }
 
     fn row(&mut self, cells: &[Cell]) -> Result<(), ReportError> {
         let dialect = self.dialect;
-        self.writer
-            .write_record(cells.iter().map(|cell| cell.text(dialect)))?;
+        self.writer.write_record(cells.iter().map(|cell| cell.text(dialect)))?;
         self.rows += 1;
         Ok(())
     }
 
     fn finish(self) -> Result<Written, ReportError> {
-        let bytes = self
-            .writer
-            .into_inner()
-            .map_err(|error| ReportError::Csv(error.into_error().into()))?;
-        Ok(Written {
-            bytes,
-            rows: self.rows,
-        })
+        let bytes = self.writer.into_inner().map_err(|error| ReportError::Csv(error.into_error().into()))?;
+        Ok(Written { bytes, rows: self.rows })
     }
 }
 
@@ -122,18 +106,8 @@ fn check(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportError> {
     for r in &outcome.requirements {
         let (limit, is_minimum) = bound(r.bound);
         let (value, lo, hi, undefined) = match &r.value {
-            Ok(value) => (
-                Cell::Number(*value),
-                Cell::Number(r.lo_joint),
-                Cell::Number(r.hi_joint),
-                "",
-            ),
-            Err(undefined) => (
-                Cell::Empty,
-                Cell::Empty,
-                Cell::Empty,
-                undefined.reason.as_str(),
-            ),
+            Ok(value) => (Cell::Number(*value), Cell::Number(r.lo_joint), Cell::Number(r.hi_joint), ""),
+            Err(undefined) => (Cell::Empty, Cell::Empty, Cell::Empty, undefined.reason.as_str()),
         };
         table.row(&[
             Cell::Text(&r.standard),
@@ -162,7 +136,8 @@ fn check(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportError> {
 }
 
 fn points(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportError> {
-    let header = "area,light_scene,i,row,column,x_m,y_m,z_m,quantity,unit,value,se,lo,hi,direct,indirect,n,room";
+    let header =
+        "area,light_scene,i,row,column,x_m,y_m,z_m,quantity,unit,value,se,lo,hi,direct,indirect,n,room";
     let mut table = Table::new(dialect, &header.split(',').collect::<Vec<_>>())?;
     for room in &outcome.rooms {
         for area in &room.areas {
@@ -172,11 +147,7 @@ fn points(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportError> {
     table.finish()
 }
 
-fn area_points(
-    table: &mut Table,
-    room: &RoomOutcome,
-    area: &AreaOutcome,
-) -> Result<(), ReportError> {
+fn area_points(table: &mut Table, room: &RoomOutcome, area: &AreaOutcome) -> Result<(), ReportError> {
     for field in &area.fields {
         let key = field.quantity.key();
         for (index, (place, point)) in area.grid.points.iter().zip(&field.points).enumerate() {
@@ -288,26 +259,14 @@ mod tests {
     use crate::report::sample;
 
     fn read(bytes: &[u8], delimiter: u8) -> (csv::StringRecord, Vec<csv::StringRecord>) {
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(delimiter)
-            .from_reader(bytes);
+        let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).from_reader(bytes);
         let header = reader.headers().expect("header").clone();
-        (
-            header,
-            reader
-                .records()
-                .map(|record| record.expect("record"))
-                .collect(),
-        )
+        (header, reader.records().map(|record| record.expect("record")).collect())
     }
 
     fn file(name: &str, dialect: Dialect) -> Vec<u8> {
         let tables = tables(&sample::outcome(), dialect).expect("tables");
-        tables
-            .into_iter()
-            .find(|(n, _)| n == name)
-            .expect("present")
-            .1
+        tables.into_iter().find(|(n, _)| n == name).expect("present").1
     }
 
     #[test]
@@ -321,22 +280,13 @@ mod tests {
             .flat_map(|field| field.points.iter().flatten())
             .map(|point| point.value)
             .collect();
-        for (dialect, delimiter, sign) in
-            [(Dialect::Standard, b',', '.'), (Dialect::Excel, b';', ',')]
-        {
+        for (dialect, delimiter, sign) in [(Dialect::Standard, b',', '.'), (Dialect::Excel, b';', ',')] {
             let (header, rows) = read(&file("points.csv", dialect), delimiter);
             let column = header.iter().position(|h| h == "value").expect("value");
-            let found: Vec<f64> = rows
-                .iter()
-                .map(|row| row[column].replace(sign, ".").parse().expect("number"))
-                .collect();
+            let found: Vec<f64> =
+                rows.iter().map(|row| row[column].replace(sign, ".").parse().expect("number")).collect();
             assert_eq!(found.len(), expected.len());
-            assert!(
-                found
-                    .iter()
-                    .zip(&expected)
-                    .all(|(a, b)| a.to_bits() == b.to_bits())
-            );
+            assert!(found.iter().zip(&expected).all(|(a, b)| a.to_bits() == b.to_bits()));
         }
     }
 
@@ -351,10 +301,7 @@ mod tests {
     fn an_undefined_value_is_an_empty_cell_with_its_reason() {
         let (header, rows) = read(&file("viewpoints.csv", Dialect::Standard), b',');
         let column = |name: &str| header.iter().position(|h| h == name).expect("column");
-        let row = rows
-            .iter()
-            .find(|row| row[column("value")].is_empty())
-            .expect("one is undefined");
+        let row = rows.iter().find(|row| row[column("value")].is_empty()).expect("one is undefined");
         assert!(!row[column("undefined")].is_empty());
     }
 }

@@ -13,10 +13,7 @@ pub const MANIFEST: &str = "provenance.json";
 
 /// Replaces the report in `out` by `files` (paths with `/`).
 pub fn replace(out: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, ReportError> {
-    let relative: Vec<PathBuf> = files
-        .iter()
-        .map(|(path, _)| path.split('/').collect())
-        .collect();
+    let relative: Vec<PathBuf> = files.iter().map(|(path, _)| path.split('/').collect()).collect();
     for path in &relative {
         let target = out.join(path);
         if target.is_dir() {
@@ -25,10 +22,7 @@ pub fn replace(out: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, 
     }
     if out.exists() && !out.is_dir() {
         let source = io::Error::new(io::ErrorKind::NotADirectory, "not a folder");
-        return Err(ReportError::Io {
-            path: out.to_owned(),
-            source,
-        });
+        return Err(ReportError::Io { path: out.to_owned(), source });
     }
     let staging = Staging::beside(out)?;
     for (path, (_, bytes)) in relative.iter().zip(files) {
@@ -60,10 +54,7 @@ fn stale(out: &Path, new: &[PathBuf]) -> Vec<PathBuf> {
     listed_files(&manifest)
         .into_iter()
         .map(|(path, hash)| (PathBuf::from(path), hash))
-        .filter(|(path, _)| {
-            path.components()
-                .all(|part| matches!(part, Component::Normal(_)))
-        })
+        .filter(|(path, _)| path.components().all(|part| matches!(part, Component::Normal(_))))
         .filter(|(path, _)| !new.contains(path))
         .map(|(path, hash)| (out.join(path), hash))
         .filter(|(path, _)| fs::symlink_metadata(path).is_ok_and(|meta| meta.is_file()))
@@ -97,11 +88,7 @@ impl Staging {
             (None, _) => out.to_owned(),
         };
         fs::create_dir_all(&parent).map_err(at(&parent))?;
-        let name = out
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
+        let name = out.file_name().unwrap_or_default().to_string_lossy().into_owned();
         for attempt in 0..1000 {
             let path = parent.join(format!(".{name}.partial-{attempt}"));
             match fs::create_dir(&path) {
@@ -110,14 +97,8 @@ impl Staging {
                 Err(error) => return Err(at(&path)(error)),
             }
         }
-        let source = io::Error::new(
-            io::ErrorKind::AlreadyExists,
-            "too many unfinished reports beside it",
-        );
-        Err(ReportError::Io {
-            path: parent,
-            source,
-        })
+        let source = io::Error::new(io::ErrorKind::AlreadyExists, "too many unfinished reports beside it");
+        Err(ReportError::Io { path: parent, source })
     }
 }
 
@@ -136,13 +117,7 @@ mod tests {
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<String> = fs::read_dir(folder)
             .expect("folder")
-            .map(|entry| {
-                entry
-                    .expect("entry")
-                    .file_name()
-                    .to_string_lossy()
-                    .into_owned()
-            })
+            .map(|entry| entry.expect("entry").file_name().to_string_lossy().into_owned())
             .collect();
         names.sort();
         names
@@ -155,10 +130,7 @@ mod tests {
         fs::write(&out, "somebody's file").expect("written");
         write(&sample::outcome(), &out, &Options::default()).expect_err("a file is no folder");
         assert_eq!(names(parent.path()), ["out"]);
-        assert_eq!(
-            fs::read_to_string(&out).expect("still there"),
-            "somebody's file"
-        );
+        assert_eq!(fs::read_to_string(&out).expect("still there"), "somebody's file");
 
         let out = parent.path().join("second");
         fs::create_dir_all(out.join("report.html")).expect("folder");
@@ -181,18 +153,10 @@ mod tests {
         let mut smaller = sample::outcome();
         smaller.rooms.clear();
         write(&smaller, &out, &Options::default()).expect("written");
-        assert_eq!(
-            names(&out.join("plan")),
-            plans[..1],
-            "only the edited drawing stays"
-        );
+        assert_eq!(names(&out.join("plan")), plans[..1], "only the edited drawing stays");
         assert!(names(&out).contains(&"notes.txt".to_owned()));
         assert!(!out.join("points.csv").exists());
-        assert_eq!(
-            names(&parent.path().join("a")),
-            ["out"],
-            "no unfinished folder stays"
-        );
+        assert_eq!(names(&parent.path().join("a")), ["out"], "no unfinished folder stays");
     }
 
     #[test]
@@ -201,10 +165,7 @@ mod tests {
         let out = parent.path().join("out");
         fs::create_dir(&out).expect("folder");
         fs::write(parent.path().join("victim"), "x").expect("written");
-        let manifest = format!(
-            r#"{{"files":[{{"path":"../victim","sha256":"{}"}}]}}"#,
-            sha256(b"x")
-        );
+        let manifest = format!(r#"{{"files":[{{"path":"../victim","sha256":"{}"}}]}}"#, sha256(b"x"));
         fs::write(out.join(MANIFEST), manifest).expect("written");
         write(&sample::outcome(), &out, &Options::default()).expect("written");
         assert!(parent.path().join("victim").exists());

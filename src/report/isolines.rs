@@ -46,20 +46,14 @@ pub fn contours(values: &Values<'_>, level: f64) -> Contours {
     }
     let is_crossing = |vertex: &Vertex| vertex.2 != 0;
     let place = |vertex: &Vertex| nodes.place(*vertex, level);
-    let lines: BTreeSet<_> = borders
-        .iter()
-        .copied()
-        .filter(|(a, b)| is_crossing(a) && is_crossing(b))
-        .collect();
+    let lines: BTreeSet<_> =
+        borders.iter().copied().filter(|(a, b)| is_crossing(a) && is_crossing(b)).collect();
     Contours {
         regions: chains(borders)
             .into_iter()
             .map(|chain| straightened(chain.iter().map(place).collect()))
             .collect(),
-        lines: chains(lines)
-            .into_iter()
-            .map(|chain| chain.iter().map(place).collect())
-            .collect(),
+        lines: chains(lines).into_iter().map(|chain| chain.iter().map(place).collect()).collect(),
     }
 }
 
@@ -80,11 +74,7 @@ fn chains(edges: BTreeSet<(Vertex, Vertex)>) -> Vec<Vec<Vertex>> {
     for (from, to) in edges {
         next.entry(from).or_default().push(to);
     }
-    let mut starts: Vec<Vertex> = next
-        .keys()
-        .copied()
-        .filter(|from| !ends.contains(from))
-        .collect();
+    let mut starts: Vec<Vertex> = next.keys().copied().filter(|from| !ends.contains(from)).collect();
     starts.extend(next.keys().copied());
     let mut chains = Vec::new();
     for start in starts {
@@ -110,11 +100,7 @@ fn straightened(mut ring: Vec<Place>) -> Vec<Place> {
     }
     let count = ring.len();
     let bends = |index: &usize| {
-        let (a, b, c) = (
-            ring[(index + count - 1) % count],
-            ring[*index],
-            ring[(index + 1) % count],
-        );
+        let (a, b, c) = (ring[(index + count - 1) % count], ring[*index], ring[(index + 1) % count]);
         ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])).abs() > 1e-9
     };
     (0..count).filter(bends).map(|index| ring[index]).collect()
@@ -144,10 +130,7 @@ impl<'a> Nodes<'a> {
                 values.push((count > 0).then(|| sum / f64::from(count)));
             }
         }
-        Self {
-            source: *source,
-            values,
-        }
+        Self { source: *source, values }
     }
 
     /// The grid point in whose cell a refined square lies.
@@ -162,18 +145,8 @@ impl<'a> Nodes<'a> {
 
     /// The parts of a refined square where the value is at least `level`, counter-clockwise.
     fn at_least(&self, column: usize, row: usize, level: f64) -> Vec<Vec<Vertex>> {
-        let corners = [
-            (column, row),
-            (column + 1, row),
-            (column + 1, row + 1),
-            (column, row + 1),
-        ];
-        let sides = [
-            (column, row, 1),
-            (column + 1, row, 2),
-            (column, row + 1, 1),
-            (column, row, 2),
-        ];
+        let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
+        let sides = [(column, row, 1), (column + 1, row, 2), (column, row + 1, 1), (column, row, 2)];
         let high = corners.map(|(c, r)| self.value(c, r) >= level);
         let node = |corner: usize| (corners[corner].0, corners[corner].1, 0);
         let mean = corners.iter().map(|(c, r)| self.value(*c, *r)).sum::<f64>() / 4.0;
@@ -193,11 +166,7 @@ impl<'a> Nodes<'a> {
                 polygon.push(sides[corner]);
             }
         }
-        if polygon.is_empty() {
-            Vec::new()
-        } else {
-            vec![polygon]
-        }
+        if polygon.is_empty() { Vec::new() } else { vec![polygon] }
     }
 
     fn place(&self, (column, row, kind): Vertex, level: f64) -> Place {
@@ -209,21 +178,13 @@ impl<'a> Nodes<'a> {
         };
         let (from, to) = (self.value(column, row), self.value(next_column, next_row));
         let share = ((level - from) / (to - from)).clamp(0.0, 1.0) / 2.0;
-        if kind == 1 {
-            [x + share, y]
-        } else {
-            [x, y + share]
-        }
+        if kind == 1 { [x + share, y] } else { [x, y + share] }
     }
 }
 
 /// Grid points beside a node: the one it lies on, or the two it lies between, inside the grid.
 fn around(node: usize, count: usize) -> std::ops::Range<usize> {
-    let low = if node % 2 == 1 {
-        node / 2
-    } else {
-        (node / 2).saturating_sub(1)
-    };
+    let low = if node % 2 == 1 { node / 2 } else { (node / 2).saturating_sub(1) };
     low..(node / 2 + 1).min(count)
 }
 
@@ -289,52 +250,24 @@ mod tests {
 
     #[test]
     fn a_slope_is_cut_where_it_has_the_level() {
-        let values: Vec<_> = (0..3)
-            .flat_map(|_| (0..5).map(|c| Some(10.0 * f64::from(c))))
-            .collect();
-        let found = contours(
-            &Values {
-                columns: 5,
-                rows: 3,
-                by_point: &values,
-            },
-            23.0,
-        );
+        let values: Vec<_> = (0..3).flat_map(|_| (0..5).map(|c| Some(10.0 * f64::from(c)))).collect();
+        let found = contours(&Values { columns: 5, rows: 3, by_point: &values }, 23.0);
         assert_eq!(found.lines.len(), 1);
-        assert!(
-            found.lines[0]
-                .iter()
-                .all(|place| (place[0] - 2.8).abs() < 1e-12)
-        );
+        assert!(found.lines[0].iter().all(|place| (place[0] - 2.8).abs() < 1e-12));
         assert!((area(&found.regions) - 3.0 * 2.2).abs() < 1e-12);
     }
 
     #[test]
     fn a_hill_has_a_closed_line_and_a_pit_is_a_hole() {
         let hill = |sign: f64| {
-            let at =
-                |i: i32| Some(100.0 - sign * f64::from((i % 7 - 3).pow(2) + (i / 7 - 3).pow(2)));
+            let at = |i: i32| Some(100.0 - sign * f64::from((i % 7 - 3).pow(2) + (i / 7 - 3).pow(2)));
             (0..49).map(at).collect::<Vec<_>>()
         };
-        let found = contours(
-            &Values {
-                columns: 7,
-                rows: 7,
-                by_point: &hill(1.0),
-            },
-            96.0,
-        );
+        let found = contours(&Values { columns: 7, rows: 7, by_point: &hill(1.0) }, 96.0);
         assert_eq!((found.lines.len(), found.regions.len()), (1, 1));
         assert_eq!(found.lines[0].first(), found.lines[0].last());
         assert!((area(&found.regions) - std::f64::consts::PI * 4.0).abs() < 1.5);
-        let pit = contours(
-            &Values {
-                columns: 7,
-                rows: 7,
-                by_point: &hill(-1.0),
-            },
-            104.0,
-        );
+        let pit = contours(&Values { columns: 7, rows: 7, by_point: &hill(-1.0) }, 104.0);
         assert_eq!(pit.regions.len(), 2);
         assert!((area(&pit.regions) + area(&found.regions) - 49.0).abs() < 1e-9);
     }
@@ -342,14 +275,7 @@ mod tests {
     #[test]
     fn excluded_points_cut_the_region_and_carry_no_line() {
         let values = [Some(1.0), Some(1.0), Some(1.0), None];
-        let all = contours(
-            &Values {
-                columns: 2,
-                rows: 2,
-                by_point: &values,
-            },
-            f64::NEG_INFINITY,
-        );
+        let all = contours(&Values { columns: 2, rows: 2, by_point: &values }, f64::NEG_INFINITY);
         assert!(all.lines.is_empty());
         assert!((area(&all.regions) - 3.0).abs() < 1e-12);
         assert_eq!(all.regions[0].len(), 6, "an L has six corners");
@@ -359,11 +285,7 @@ mod tests {
     fn both_ways_through_a_saddle_are_consistent() {
         for corner in [9.0, 1.0] {
             let values = [Some(10.0), Some(0.0), Some(0.0), Some(corner)];
-            let grid = Values {
-                columns: 2,
-                rows: 2,
-                by_point: &values,
-            };
+            let grid = Values { columns: 2, rows: 2, by_point: &values };
             let (high, all) = (contours(&grid, 5.0), contours(&grid, f64::NEG_INFINITY));
             assert!(area(&high.regions) > 0.0 && area(&high.regions) < area(&all.regions));
         }
@@ -371,14 +293,8 @@ mod tests {
 
     #[test]
     fn levels_are_nice_numbers_inside_the_range() {
-        assert_eq!(
-            levels(320.0, 680.0),
-            [350.0, 400.0, 450.0, 500.0, 550.0, 600.0, 650.0]
-        );
-        assert_eq!(
-            levels(40.0, 900.0),
-            [50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 500.0, 750.0]
-        );
+        assert_eq!(levels(320.0, 680.0), [350.0, 400.0, 450.0, 500.0, 550.0, 600.0, 650.0]);
+        assert_eq!(levels(40.0, 900.0), [50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 500.0, 750.0]);
         assert_eq!(levels(0.3, 0.6), [0.35, 0.4, 0.45, 0.5, 0.55]);
         assert!(levels(5.0, 5.0).is_empty() && levels(f64::NAN, 1.0).is_empty());
     }

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::ReportError;
 use super::sentence::{bound, verdict_key};
 use crate::outcome::{
-    AreaOutcome, Bias, FluxBalance, GlareSourceOutcome, Interval, NormOutcome, Outcome,
-    Requirement, RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
+    AreaOutcome, Bias, FluxBalance, GlareSourceOutcome, Interval, NormOutcome, Outcome, Requirement,
+    RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
 };
 use crate::project::{AreaKind, Info, InputFile};
 use crate::quantity::{Quantity, Statistic};
@@ -177,10 +177,7 @@ pub fn bytes(file: &impl Serialize) -> Result<Vec<u8>, ReportError> {
 }
 
 fn reason<T>(value: &Result<T, Undefined>) -> Option<&str> {
-    value
-        .as_ref()
-        .err()
-        .map(|undefined| undefined.reason.as_str())
+    value.as_ref().err().map(|undefined| undefined.reason.as_str())
 }
 
 fn finite(number: f64) -> Option<f64> {
@@ -244,11 +241,7 @@ fn room(room: &RoomOutcome) -> RoomRow<'_> {
         footprint_m: room.footprint.iter().map(DVec2::to_array).collect(),
         floor_m: room.floor_m,
         height_m: room.height_m,
-        reflectances: Reflectances {
-            ceiling,
-            walls,
-            floor,
-        },
+        reflectances: Reflectances { ceiling, walls, floor },
         luminaire_types: &room.types,
         luminaires: room.luminaires.len(),
         areas: room.areas.iter().map(area).collect(),
@@ -274,11 +267,7 @@ fn area(area: &AreaOutcome) -> AreaRow<'_> {
         spacing_m: grid.spacing_m,
         border_m: grid.border_m,
         points: grid.points.len(),
-        excluded: grid
-            .points
-            .iter()
-            .filter(|point| point.excluded.is_some())
-            .count(),
+        excluded: grid.points.iter().filter(|point| point.excluded.is_some()).count(),
     }
 }
 
@@ -355,12 +344,7 @@ mod tests {
             }
         }
         if let Some(object) = value.as_object() {
-            for key in schema["required"]
-                .as_array()
-                .into_iter()
-                .flatten()
-                .filter_map(Json::as_str)
-            {
+            for key in schema["required"].as_array().into_iter().flatten().filter_map(Json::as_str) {
                 if !object.contains_key(key) {
                     found.push(format!("{at}: {key} is missing"));
                 }
@@ -389,10 +373,7 @@ mod tests {
             serde_json::from_slice(&result(&sample::outcome()).expect("bytes")).expect("JSON");
         assert_eq!(check(&file), Vec::<String>::new());
         file["requirements"][0]["outcome"] = "perhaps".into();
-        file["values"][0]
-            .as_object_mut()
-            .expect("object")
-            .remove("se");
+        file["values"][0].as_object_mut().expect("object").remove("se");
         file["invented"] = 1.into();
         assert_eq!(check(&file).len(), 3);
     }
@@ -402,11 +383,7 @@ mod tests {
         let text = String::from_utf8(result(&sample::outcome()).expect("bytes")).expect("UTF-8");
         assert!(!text.contains("NaN") && !text.contains("Infinity"));
         let file: Json = serde_json::from_str(&text).expect("JSON");
-        let undefined = file["values"]
-            .as_array()
-            .expect("values")
-            .iter()
-            .find(|v| v["value"].is_null());
+        let undefined = file["values"].as_array().expect("values").iter().find(|v| v["value"].is_null());
         assert!(undefined.expect("one is undefined")["undefined"].is_string());
     }
 
@@ -414,17 +391,9 @@ mod tests {
     fn numbers_read_back_to_the_same_bits() {
         let outcome = sample::outcome();
         let file: Json = serde_json::from_slice(&result(&outcome).expect("bytes")).expect("JSON");
-        for (row, value) in file["values"]
-            .as_array()
-            .expect("values")
-            .iter()
-            .zip(&outcome.values)
-        {
+        for (row, value) in file["values"].as_array().expect("values").iter().zip(&outcome.values) {
             if let Ok(estimate) = &value.estimate {
-                assert_eq!(
-                    row["value"].as_f64().map(f64::to_bits),
-                    Some(estimate.value.to_bits())
-                );
+                assert_eq!(row["value"].as_f64().map(f64::to_bits), Some(estimate.value.to_bits()));
             }
         }
     }

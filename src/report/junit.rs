@@ -10,26 +10,12 @@ use crate::outcome::{Outcome, Requirement, Verdict};
 pub fn junit(outcome: &Outcome) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let counts = counts(&outcome.requirements.iter().collect::<Vec<_>>());
-    put(
-        &mut text,
-        format_args!(
-            "<testsuites name=\"{}\"{counts}>\n",
-            escape(&outcome.info.name)
-        ),
-    );
+    put(&mut text, format_args!("<testsuites name=\"{}\"{counts}>\n", escape(&outcome.info.name)));
     for room in &outcome.rooms {
-        let cases: Vec<&Requirement> = outcome
-            .requirements
-            .iter()
-            .filter(|r| r.room == room.name)
-            .collect();
+        let cases: Vec<&Requirement> = outcome.requirements.iter().filter(|r| r.room == room.name).collect();
         put(
             &mut text,
-            format_args!(
-                "  <testsuite name=\"{}\"{}>\n",
-                escape(&room.name),
-                self::counts(&cases)
-            ),
+            format_args!("  <testsuite name=\"{}\"{}>\n", escape(&room.name), self::counts(&cases)),
         );
         for case in cases {
             text.push_str(&self::case(case));
@@ -47,12 +33,7 @@ pub fn junit(outcome: &Outcome) -> String {
 }
 
 fn counts(cases: &[&Requirement]) -> String {
-    let count = |verdicts: &[Verdict]| {
-        cases
-            .iter()
-            .filter(|r| verdicts.contains(&r.verdict))
-            .count()
-    };
+    let count = |verdicts: &[Verdict]| cases.iter().filter(|r| verdicts.contains(&r.verdict)).count();
     format!(
         " tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\"",
         cases.len(),
@@ -63,10 +44,7 @@ fn counts(cases: &[&Requirement]) -> String {
 }
 
 fn case(requirement: &Requirement) -> String {
-    let naming = Naming {
-        room: false,
-        light_scene: true,
-    };
+    let naming = Naming { room: false, light_scene: true };
     let words = sentence(Lang::En, requirement, naming);
     let message = escape(&line(requirement));
     let inner = match requirement.verdict {
@@ -82,12 +60,7 @@ fn case(requirement: &Requirement) -> String {
             format!("<skipped message=\"{}\"/>", words.verdict)
         }
     };
-    let name = escape(&format!(
-        "{} · {} {}",
-        words.symbol.text(),
-        words.place,
-        words.required
-    ));
+    let name = escape(&format!("{} · {} {}", words.symbol.text(), words.place, words.required));
     let class = escape(&format!("{}.{}", requirement.standard, requirement.clause));
     format!("    <testcase classname=\"{class}\" name=\"{name}\">{inner}</testcase>\n")
 }
@@ -102,12 +75,7 @@ mod tests {
         let outcome = sample::outcome();
         let text = junit(&outcome);
         let document = roxmltree::Document::parse(&text).expect("well-formed");
-        let count = |tag: &str| {
-            document
-                .descendants()
-                .filter(|n| n.has_tag_name(tag))
-                .count()
-        };
+        let count = |tag: &str| document.descendants().filter(|n| n.has_tag_name(tag)).count();
         assert_eq!(count("testcase"), outcome.requirements.len());
         assert_eq!(count("failure"), 2);
     }

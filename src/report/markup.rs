@@ -27,11 +27,7 @@ pub fn grid(align: &str, head: &[&str], rows: &[Vec<String>]) -> String {
     };
     let mut html = String::from("<table><thead><tr>");
     for (column, cell) in head.iter().enumerate() {
-        let class = if class(column).contains('n') {
-            " style=\"text-align:right\""
-        } else {
-            ""
-        };
+        let class = if class(column).contains('n') { " style=\"text-align:right\"" } else { "" };
         put(&mut html, format_args!("<th{class}>{cell}</th>"));
     }
     html.push_str("</tr></thead><tbody>\n");
@@ -40,9 +36,7 @@ pub fn grid(align: &str, head: &[&str], rows: &[Vec<String>]) -> String {
             let columns = head.len();
             put(
                 &mut html,
-                format_args!(
-                    "<tr class=\"group\"><td class=\"a\" colspan=\"{columns}\">{title}</td></tr>\n"
-                ),
+                format_args!("<tr class=\"group\"><td class=\"a\" colspan=\"{columns}\">{title}</td></tr>\n"),
             );
             continue;
         }
@@ -75,25 +69,13 @@ pub fn symbol(symbol: &Symbol) -> String {
                 html.push_str(&escape(part));
                 continue;
             }
-            let end = part
-                .find(|c: char| !c.is_alphanumeric() && c != ',')
-                .unwrap_or(part.len());
-            put(
-                &mut html,
-                format_args!(
-                    "<sub>{}</sub>{}",
-                    escape(&part[..end]),
-                    escape(&part[end..])
-                ),
-            );
+            let end = part.find(|c: char| !c.is_alphanumeric() && c != ',').unwrap_or(part.len());
+            put(&mut html, format_args!("<sub>{}</sub>{}", escape(&part[..end]), escape(&part[end..])));
         }
         html
     };
-    let index = if symbol.index.is_empty() {
-        String::new()
-    } else {
-        format!("<sub>{}</sub>", escape(&symbol.index))
-    };
+    let index =
+        if symbol.index.is_empty() { String::new() } else { format!("<sub>{}</sub>", escape(&symbol.index)) };
     format!("{}{index}{}", below(&symbol.letter), below(&symbol.rest))
 }
 

@@ -48,10 +48,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            languages: Vec::new(),
-            dialect: csv::Dialect::Standard,
-        }
+        Self { languages: Vec::new(), dialect: csv::Dialect::Standard }
     }
 }
 
@@ -67,9 +64,7 @@ pub enum ReportError {
         source: std::io::Error,
     },
     /// A folder stands where a file of the report belongs.
-    #[error(
-        "{0}: a folder stands where a file of the report belongs; move it away or choose another --out"
-    )]
+    #[error("{0}: a folder stands where a file of the report belongs; move it away or choose another --out")]
     FolderInTheWay(PathBuf),
     /// A table could not be encoded.
     #[error("table: {0}")]
@@ -86,11 +81,7 @@ pub enum ReportError {
 /// # Errors
 /// Where the folder cannot be written; nothing of the report is left behind then, unless the disk
 /// fails between two renames.
-pub fn write(
-    outcome: &Outcome,
-    out: &Path,
-    options: &Options,
-) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(outcome: &Outcome, out: &Path, options: &Options) -> Result<Vec<PathBuf>, ReportError> {
     folder::replace(out, &files(outcome, options)?)
 }
 
@@ -105,10 +96,7 @@ pub fn files(outcome: &Outcome, options: &Options) -> Result<Vec<(String, Vec<u8
     for (name, svg) in plan::files(outcome, languages[0]) {
         files.push((format!("plan/{name}"), svg.into_bytes()));
     }
-    files.push((
-        "report.html".to_owned(),
-        page::page(outcome, &languages).into_bytes(),
-    ));
+    files.push(("report.html".to_owned(), page::page(outcome, &languages).into_bytes()));
     let provenance = provenance::provenance(outcome, &files)?;
     files.push((folder::MANIFEST.to_owned(), provenance));
     Ok(files)
@@ -122,16 +110,9 @@ pub fn schema() -> &'static str {
 /// Languages without repetition; never empty.
 fn languages(outcome: &Outcome, options: &Options) -> Vec<Lang> {
     let mut languages = Vec::new();
-    let of_project = outcome
-        .info
-        .language
-        .iter()
-        .filter_map(|code| Lang::parse(code));
-    let wanted: Vec<Lang> = if options.languages.is_empty() {
-        of_project.collect()
-    } else {
-        options.languages.clone()
-    };
+    let of_project = outcome.info.language.iter().filter_map(|code| Lang::parse(code));
+    let wanted: Vec<Lang> =
+        if options.languages.is_empty() { of_project.collect() } else { options.languages.clone() };
     for lang in wanted {
         if !languages.contains(&lang) {
             languages.push(lang);
@@ -149,41 +130,26 @@ mod tests {
 
     #[test]
     fn equal_outcomes_give_equal_bytes_that_name_no_place() {
-        let options = Options {
-            languages: vec![Lang::En, Lang::Ru],
-            ..Options::default()
-        };
+        let options = Options { languages: vec![Lang::En, Lang::Ru], ..Options::default() };
         let first = files(&sample::outcome(), &options).expect("files");
         let second = files(&sample::outcome(), &options).expect("files");
         assert!(first == second);
         let here = env!("CARGO_MANIFEST_DIR");
         for (name, bytes) in &first {
-            assert!(
-                !String::from_utf8_lossy(bytes).contains(here),
-                "{name} names a folder of this machine"
-            );
+            assert!(!String::from_utf8_lossy(bytes).contains(here), "{name} names a folder of this machine");
         }
     }
 
     #[test]
     fn every_drawing_and_the_page_are_well_formed() {
-        let options = Options {
-            languages: vec![Lang::Ru, Lang::En],
-            ..Options::default()
-        };
+        let options = Options { languages: vec![Lang::Ru, Lang::En], ..Options::default() };
         let mut drawings = 0;
         for (name, bytes) in files(&sample::outcome(), &options).expect("files") {
             let text = String::from_utf8(bytes).expect("UTF-8");
-            let extension = Path::new(&name)
-                .extension()
-                .and_then(|e| e.to_str())
-                .unwrap_or_default()
-                .to_owned();
+            let extension =
+                Path::new(&name).extension().and_then(|e| e.to_str()).unwrap_or_default().to_owned();
             if extension == "svg" || extension == "html" {
-                let allow = roxmltree::ParsingOptions {
-                    allow_dtd: true,
-                    ..Default::default()
-                };
+                let allow = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
                 roxmltree::Document::parse_with_options(&text, allow)
                     .unwrap_or_else(|e| panic!("{name}: {e}"));
                 drawings += usize::from(extension == "svg");
@@ -191,26 +157,15 @@ mod tests {
         }
         assert_eq!(
             drawings,
-            sample::outcome()
-                .rooms
-                .iter()
-                .flat_map(|r| &r.areas)
-                .map(|a| a.fields.len())
-                .sum::<usize>()
+            sample::outcome().rooms.iter().flat_map(|r| &r.areas).map(|a| a.fields.len()).sum::<usize>()
         );
     }
 
     #[test]
     fn project_languages_count_where_none_is_asked_for() {
         let outcome = sample::outcome();
-        assert_eq!(
-            languages(&outcome, &Options::default()),
-            [Lang::Ru, Lang::En]
-        );
-        let twice = Options {
-            languages: vec![Lang::En, Lang::En],
-            ..Options::default()
-        };
+        assert_eq!(languages(&outcome, &Options::default()), [Lang::Ru, Lang::En]);
+        let twice = Options { languages: vec![Lang::En, Lang::En], ..Options::default() };
         assert_eq!(languages(&outcome, &twice), [Lang::En]);
     }
 
@@ -219,43 +174,12 @@ mod tests {
     #[ignore = "writes into the folder named by GERSHUN_LOOK"]
     fn look() {
         let folder = std::env::var_os("GERSHUN_LOOK").expect("GERSHUN_LOOK names a folder");
-        let options = Options {
-            languages: vec![Lang::En, Lang::Ru],
-            ..Options::default()
-        };
-        write(
-            &sample::outcome(),
-            &Path::new(&folder).join("sample"),
-            &options,
-        )
-        .expect("written");
-        write(
-            &sample::hundred_rooms(),
-            &Path::new(&folder).join("hundred"),
-            &options,
-        )
-        .expect("written");
+        let options = Options { languages: vec![Lang::En, Lang::Ru], ..Options::default() };
+        write(&sample::outcome(), &Path::new(&folder).join("sample"), &options).expect("written");
+        write(&sample::hundred_rooms(), &Path::new(&folder).join("hundred"), &options).expect("written");
         for lang in [Lang::En, Lang::Ru] {
-            println!(
-                "{}",
-                table(
-                    &sample::outcome(),
-                    Style {
-                        lang,
-                        colour: Colour::Plain
-                    }
-                )
-            );
+            println!("{}", table(&sample::outcome(), Style { lang, colour: Colour::Plain }));
         }
-        println!(
-            "{}",
-            table(
-                &sample::hundred_rooms(),
-                Style {
-                    lang: Lang::En,
-                    colour: Colour::Plain
-                }
-            )
-        );
+        println!("{}", table(&sample::hundred_rooms(), Style { lang: Lang::En, colour: Colour::Plain }));
     }
 }

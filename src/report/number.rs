@@ -74,18 +74,10 @@ pub fn value(lang: Lang, quantity: Quantity, statistic: Statistic, value: f64) -
 }
 
 /// A value beside a limit: more decimals where rounding would hide on which side it lies.
-pub fn value_beside(
-    lang: Lang,
-    quantity: Quantity,
-    statistic: Statistic,
-    shown: f64,
-    limit: f64,
-) -> String {
+pub fn value_beside(lang: Lang, quantity: Quantity, statistic: Statistic, shown: f64, limit: f64) -> String {
     let mut text = value(lang, quantity, statistic, shown);
     let mut extra = decimals(quantity, statistic, shown);
-    while text == value(lang, quantity, statistic, limit)
-        && (shown - limit).abs() > 1e-6 * limit.abs()
-    {
+    while text == value(lang, quantity, statistic, limit) && (shown - limit).abs() > 1e-6 * limit.abs() {
         extra += 1;
         let finer = fixed(lang, shown, extra);
         if finer != fixed(lang, limit, extra) {
@@ -97,18 +89,12 @@ pub fn value_beside(
 
 /// A limit, without the zeros that rounding would add to UGR and R_a.
 pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -> String {
-    let whole =
-        matches!(quantity, Quantity::Ugr | Quantity::ColourRendering) && limit.fract().abs() < 1e-9;
-    if whole {
-        fixed(lang, limit, 0)
-    } else {
-        value(lang, quantity, statistic, limit)
-    }
+    let whole = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering) && limit.fract().abs() < 1e-9;
+    if whole { fixed(lang, limit, 0) } else { value(lang, quantity, statistic, limit) }
 }
 
 fn is_luminance(quantity: Quantity, statistic: Statistic) -> bool {
-    matches!(quantity, Quantity::Luminance { .. })
-        && !matches!(statistic, Statistic::U0 | Statistic::Ud)
+    matches!(quantity, Quantity::Luminance { .. }) && !matches!(statistic, Statistic::U0 | Statistic::Ud)
 }
 
 fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
@@ -150,11 +136,7 @@ pub fn percent(lang: Lang, share: f64) -> String {
 pub fn metres(lang: Lang, length_m: f64) -> String {
     let text = fixed(lang, length_m, 3);
     let trimmed = text.trim_end_matches('0').trim_end_matches(['.', ',']);
-    if text.contains(['.', ',']) && !trimmed.is_empty() {
-        trimmed.to_owned()
-    } else {
-        text
-    }
+    if text.contains(['.', ',']) && !trimmed.is_empty() { trimmed.to_owned() } else { text }
 }
 
 #[cfg(test)]
@@ -181,31 +163,19 @@ mod tests {
     #[test]
     fn ratios_indices_and_luminances_follow_their_rules() {
         let english = |q, s, x| value(Lang::En, q, s, x);
-        let luminance = Quantity::Luminance {
-            azimuth_deg: 0.0,
-            tilt_deg: 0.0,
-        };
+        let luminance = Quantity::Luminance { azimuth_deg: 0.0, tilt_deg: 0.0 };
         assert_eq!(english(Quantity::Horizontal, Statistic::U0, 0.6049), "0.60");
         assert_eq!(english(Quantity::Ugr, Statistic::Value, 18.96), "19.0");
         assert_eq!(english(luminance, Statistic::Mean, 0.123456), "0.123");
         assert_eq!(english(luminance, Statistic::Mean, 99.96), "100");
-        assert_eq!(
-            english(luminance, Statistic::Mean, 123456.0),
-            "123\u{202f}000"
-        );
+        assert_eq!(english(luminance, Statistic::Mean, 123456.0), "123\u{202f}000");
         assert_eq!(limit(Lang::En, Quantity::Ugr, Statistic::Value, 19.0), "19");
-        assert_eq!(
-            limit(Lang::En, Quantity::Ugr, Statistic::Value, 19.5),
-            "19.5"
-        );
+        assert_eq!(limit(Lang::En, Quantity::Ugr, Statistic::Value, 19.5), "19.5");
     }
 
     #[test]
     fn russian_numbers_have_a_comma_and_a_narrow_space() {
-        assert_eq!(
-            fixed(Lang::Ru, 1234567.891, 2),
-            "1\u{202f}234\u{202f}567,89"
-        );
+        assert_eq!(fixed(Lang::Ru, 1234567.891, 2), "1\u{202f}234\u{202f}567,89");
         assert_eq!(fixed(Lang::Ru, -0.25, 1), "−0,2");
         assert_eq!(fixed(Lang::Ru, -0.001, 1), "0,0");
         assert_eq!(fixed(Lang::Ru, f64::NAN, 1), "—");

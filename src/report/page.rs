@@ -26,21 +26,14 @@ pub fn page(outcome: &Outcome, languages: &[Lang]) -> String {
     let mut switch = String::new();
     for (index, lang) in languages.iter().enumerate() {
         let code = lang.code();
-        let checked = if index == 0 {
-            " checked=\"checked\""
-        } else {
-            ""
-        };
+        let checked = if index == 0 { " checked=\"checked\"" } else { "" };
         put(
             &mut switch,
             format_args!(
                 "<input class=\"tab\" type=\"radio\" name=\"language\" id=\"show-{code}\"{checked}/>\n"
             ),
         );
-        put(
-            &mut tabs,
-            format_args!("<label for=\"show-{code}\">{}</label>", lang.name()),
-        );
+        put(&mut tabs, format_args!("<label for=\"show-{code}\">{}</label>", lang.name()));
         put(
             &mut css,
             format_args!(
@@ -49,10 +42,7 @@ pub fn page(outcome: &Outcome, languages: &[Lang]) -> String {
         );
     }
     if languages.len() > 1 {
-        put(
-            &mut switch,
-            format_args!("<nav class=\"tabs\">{tabs}</nav>\n"),
-        );
+        put(&mut switch, format_args!("<nav class=\"tabs\">{tabs}</nav>\n"));
     }
     let mut body = String::new();
     for lang in languages {
@@ -66,11 +56,7 @@ pub fn page(outcome: &Outcome, languages: &[Lang]) -> String {
             ),
         );
     }
-    let title = format!(
-        "{} · {}",
-        escape(&outcome.info.name),
-        word(first, Term::Report)
-    );
+    let title = format!("{} · {}", escape(&outcome.info.name), word(first, Term::Report));
     format!(
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"{}\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width\"/>\n<title>{title}</title>\n<style>\n{}</style>\n</head>\n<body>\n{switch}{body}</body>\n</html>\n",
         first.code(),
@@ -117,11 +103,7 @@ fn head(outcome: &Outcome, lang: Lang) -> String {
             Compare::Exact => Term::CompareExact,
             Compare::Printed => Term::ComparePrinted,
         };
-        format!(
-            "{} ({})",
-            escape(&super::sentence::norm_name(norm)),
-            word(lang, compare)
-        )
+        format!("{} ({})", escape(&super::sentence::norm_name(norm)), word(lang, compare))
     });
     format!(
         "<p class=\"over\">{}</p>\n<h1>{}</h1>\n{}",
@@ -139,12 +121,7 @@ fn head(outcome: &Outcome, lang: Lang) -> String {
 fn verdict(outcome: &Outcome, lang: Lang) -> String {
     let (head, counts) = overall_parts(lang, outcome);
     let mut letters = head.chars();
-    let head: String = letters
-        .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .chain(letters)
-        .collect();
+    let head: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     format!(
         "<div class=\"verdict {}\"><b>{}</b>{}<p class=\"note\">{} {}</p></div>\n",
         class_of(outcome.verdict()),
@@ -155,26 +132,13 @@ fn verdict(outcome: &Outcome, lang: Lang) -> String {
     )
 }
 
-fn of_room<'a>(
-    outcome: &'a Outcome,
-    room: &'a RoomOutcome,
-) -> impl Iterator<Item = &'a Requirement> + Clone {
+fn of_room<'a>(outcome: &'a Outcome, room: &'a RoomOutcome) -> impl Iterator<Item = &'a Requirement> + Clone {
     outcome.requirements.iter().filter(|r| r.room == room.name)
 }
 
 fn rooms(outcome: &Outcome, lang: Lang, many: bool) -> String {
-    let tallies: Vec<Tally> = outcome
-        .rooms
-        .iter()
-        .map(|room| Tally::of(of_room(outcome, room)))
-        .collect();
-    let count = |verdict| {
-        tallies
-            .iter()
-            .filter(|tally| tally.verdict() == Some(verdict))
-            .count()
-            .to_string()
-    };
+    let tallies: Vec<Tally> = outcome.rooms.iter().map(|room| Tally::of(of_room(outcome, room))).collect();
+    let count = |verdict| tallies.iter().filter(|tally| tally.verdict() == Some(verdict)).count().to_string();
     let line = phrase(
         lang,
         Term::RoomsPassed,
@@ -191,11 +155,7 @@ fn rooms(outcome: &Outcome, lang: Lang, many: bool) -> String {
         .zip(&tallies)
         .map(|(room, tally)| room_row(outcome, room, *tally, lang, many))
         .collect();
-    let verdict = if many {
-        ""
-    } else {
-        word(lang, Term::VerdictColumn)
-    };
+    let verdict = if many { "" } else { word(lang, Term::VerdictColumn) };
     let tightest = word(lang, if many { Term::Margin } else { Term::Worst });
     let head = [word(lang, Term::RoomWord), "✓", tightest, verdict];
     let mut html = format!(
@@ -212,13 +172,7 @@ fn rooms(outcome: &Outcome, lang: Lang, many: bool) -> String {
 }
 
 /// A room's line: what it passes, its tightest requirement, and a mark where words have no room.
-fn room_row(
-    outcome: &Outcome,
-    room: &RoomOutcome,
-    tally: Tally,
-    lang: Lang,
-    many: bool,
-) -> Vec<String> {
+fn room_row(outcome: &Outcome, room: &RoomOutcome, tally: Tally, lang: Lang, many: bool) -> Vec<String> {
     let verdict = tally.verdict();
     let said = match verdict {
         None if many => "–",
@@ -229,21 +183,10 @@ fn room_row(
         None => word(lang, Term::NothingRequired),
     };
     let tightest = of_room(outcome, room)
-        .filter_map(|r| {
-            r.margin
-                .filter(|margin| margin.is_finite())
-                .map(|margin| (margin, r))
-        })
+        .filter_map(|r| r.margin.filter(|margin| margin.is_finite()).map(|margin| (margin, r)))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let tightest = tightest.map_or("—".to_owned(), |(_, r)| {
-        let text = sentence(
-            lang,
-            r,
-            Naming {
-                room: false,
-                light_scene: false,
-            },
-        );
+        let text = sentence(lang, r, Naming { room: false, light_scene: false });
         format!("{} {}", symbol(&text.symbol), text.margin)
     });
     vec![
@@ -255,19 +198,14 @@ fn room_row(
 }
 
 fn details(outcome: &Outcome, lang: Lang, many: bool, mut drawings_bytes: usize) -> String {
-    let passes =
-        |room: &&RoomOutcome| Tally::of(of_room(outcome, room)).verdict() == Some(Verdict::Pass);
+    let passes = |room: &&RoomOutcome| Tally::of(of_room(outcome, room)).verdict() == Some(Verdict::Pass);
     let (good, other): (Vec<&RoomOutcome>, Vec<&RoomOutcome>) =
         outcome.rooms.iter().partition(|room| many && passes(room));
     let mut left_out = 0;
     let mut one = |room: &RoomOutcome| {
         let mut drawings = Vec::new();
         for subject in plan::subjects(outcome).filter(|subject| std::ptr::eq(subject.room, room)) {
-            let svg = if drawings_bytes > 0 {
-                plan::draw(subject, lang)
-            } else {
-                String::new()
-            };
+            let svg = if drawings_bytes > 0 { plan::draw(subject, lang) } else { String::new() };
             if svg.is_empty() || svg.len() > drawings_bytes {
                 drawings_bytes = 0;
                 left_out += 1;
@@ -280,10 +218,7 @@ fn details(outcome: &Outcome, lang: Lang, many: bool, mut drawings_bytes: usize)
     };
     let mut html = String::new();
     for room in other {
-        put(
-            &mut html,
-            format_args!("<section class=\"chapter\">{}</section>\n", one(room)),
-        );
+        put(&mut html, format_args!("<section class=\"chapter\">{}</section>\n", one(room)));
     }
     if !good.is_empty() {
         html.push_str(&heading(lang, Term::DetailsOf));
@@ -318,47 +253,23 @@ fn method(outcome: &Outcome, lang: Lang) -> String {
     html.push_str(&pairs(&[
         (word(lang, Term::SolverWord), escape(&solver.method)),
         (word(lang, Term::Blocks), count(solver.blocks as f64)),
-        (
-            word(lang, Term::Stopped),
-            escape(words::stopped(lang, &solver.stopped)),
-        ),
-        (
-            word(lang, Term::Confidence),
-            number::fixed(lang, solver.confidence, 2),
-        ),
+        (word(lang, Term::Stopped), escape(words::stopped(lang, &solver.stopped))),
+        (word(lang, Term::Confidence), number::fixed(lang, solver.confidence, 2)),
         (word(lang, Term::Seed), solver.seed.to_string()),
         (word(lang, Term::Triangles), count(solver.triangles as f64)),
-        (
-            word(lang, Term::LuminairesWord),
-            count(solver.luminaires as f64),
-        ),
+        (word(lang, Term::LuminairesWord), count(solver.luminaires as f64)),
         (
             word(lang, Term::Rays),
-            format!(
-                "{}; {}",
-                count(solver.rays as f64),
-                count(solver.lost_rays as f64)
-            ),
+            format!("{}; {}", count(solver.rays as f64), count(solver.lost_rays as f64)),
         ),
     ]));
-    put(
-        &mut html,
-        format_args!("<p><b>{}</b></p>\n", word(lang, Term::ErrorNotice)),
-    );
+    put(&mut html, format_args!("<p><b>{}</b></p>\n", word(lang, Term::ErrorNotice)));
     html.push_str(&subheading(lang, Term::Biases));
     if outcome.biases.is_empty() {
-        put(
-            &mut html,
-            format_args!("<p>{}</p>\n", word(lang, Term::NoBiases)),
-        );
+        put(&mut html, format_args!("<p>{}</p>\n", word(lang, Term::NoBiases)));
     } else {
         let item = |bias: &Bias| {
-            format!(
-                "{}. {}: {}",
-                escape(&bias.what),
-                word(lang, Term::Effect),
-                escape(&bias.effect)
-            )
+            format!("{}. {}: {}", escape(&bias.what), word(lang, Term::Effect), escape(&bias.effect))
         };
         html.push_str(&list(outcome.biases.iter().map(item)));
     }
@@ -371,12 +282,7 @@ fn method(outcome: &Outcome, lang: Lang) -> String {
         let rows: Vec<Vec<String>> = outcome
             .inputs
             .iter()
-            .map(|input| {
-                vec![
-                    escape(&input.path),
-                    format!("<code>{}</code>", escape(&input.sha256)),
-                ]
-            })
+            .map(|input| vec![escape(&input.path), format!("<code>{}</code>", escape(&input.sha256))])
             .collect();
         html.push_str(&grid("al", &[word(lang, Term::FileWord), "SHA-256"], &rows));
     }
@@ -408,17 +314,10 @@ mod tests {
     #[test]
     fn a_russian_page_holds_no_english_heading() {
         let html = page(&sample::outcome(), &[Lang::Ru]);
-        for term in [
-            Term::Requirements,
-            Term::LuminaireSchedule,
-            Term::FluxBalance,
-            Term::Observers,
-            Term::Biases,
-        ] {
-            assert!(
-                !html.contains(&format!(">{}<", word(Lang::En, term))),
-                "{term:?}"
-            );
+        for term in
+            [Term::Requirements, Term::LuminaireSchedule, Term::FluxBalance, Term::Observers, Term::Biases]
+        {
+            assert!(!html.contains(&format!(">{}<", word(Lang::En, term))), "{term:?}");
             assert!(html.contains(word(Lang::Ru, term)), "{term:?}");
         }
     }

@@ -15,18 +15,10 @@ const SOURCES: usize = 5;
 pub fn ugr_table(tables: &[UgrTableOutcome], lang: Lang) -> String {
     let text = |value: &Result<f64, Undefined>| match value {
         Ok(value) => number::fixed(lang, *value, 1),
-        Err(undefined) => format!(
-            "— <span class=\"note\">{}</span>",
-            escape(&undefined.reason)
-        ),
+        Err(undefined) => format!("— <span class=\"note\">{}</span>", escape(&undefined.reason)),
     };
     let row = |table: &UgrTableOutcome| {
-        let notes = table
-            .notes
-            .iter()
-            .map(|note| escape(note))
-            .collect::<Vec<_>>()
-            .join("; ");
+        let notes = table.notes.iter().map(|note| escape(note)).collect::<Vec<_>>().join("; ");
         vec![
             format!("<b>{}</b>", escape(&table.kind)),
             number::fixed(lang, table.shr, 2),
@@ -48,29 +40,15 @@ pub fn ugr_table(tables: &[UgrTableOutcome], lang: Lang) -> String {
 /// Observers with their UGR, and the sources of each.
 pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
     let row = |view: &ViewpointOutcome| {
-        let eye = view
-            .eye
-            .to_array()
-            .map(|length| number::metres(lang, length))
-            .join("; ");
+        let eye = view.eye.to_array().map(|length| number::metres(lang, length)).join("; ");
         let angle = |degrees| format!("{}°", number::metres(lang, degrees));
         let ugr = match &view.ugr {
             Ok(ugr) => format!("<b>{}</b>", number::fixed(lang, ugr.value, 1)),
-            Err(undefined) => format!(
-                "— <span class=\"note\">{}</span>",
-                escape(&undefined.reason)
-            ),
+            Err(undefined) => format!("— <span class=\"note\">{}</span>", escape(&undefined.reason)),
         };
-        let interval = view
-            .ugr
-            .as_ref()
-            .map_or("—".to_owned(), |ugr| span(lang, *ugr, 1));
+        let interval = view.ugr.as_ref().map_or("—".to_owned(), |ugr| span(lang, *ugr, 1));
         vec![
-            format!(
-                "{}<br/><span class=\"note\">{}</span>",
-                escape(&view.name),
-                escape(&view.light_scene)
-            ),
+            format!("{}<br/><span class=\"note\">{}</span>", escape(&view.name), escape(&view.light_scene)),
             eye,
             format!("{}; {}", angle(view.azimuth_deg), angle(view.tilt_deg)),
             ugr,
@@ -90,20 +68,13 @@ pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
         word(lang, Term::EyeIlluminance),
     ];
     let mut html = grid("awwlrrr", &head, &views.iter().map(row).collect::<Vec<_>>());
-    let mut conventions: Vec<&str> = views
-        .iter()
-        .map(|view| view.convention.as_str())
-        .filter(|text| !text.is_empty())
-        .collect();
+    let mut conventions: Vec<&str> =
+        views.iter().map(|view| view.convention.as_str()).filter(|text| !text.is_empty()).collect();
     conventions.dedup();
     for convention in conventions {
         put(
             &mut html,
-            format_args!(
-                "<p class=\"note\">{}: {}</p>\n",
-                word(lang, Term::Convention),
-                escape(convention)
-            ),
+            format_args!("<p class=\"note\">{}: {}</p>\n", word(lang, Term::Convention), escape(convention)),
         );
     }
     for view in views.iter().filter(|view| !view.sources.is_empty()) {
@@ -147,10 +118,7 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
     if !view.notes.is_empty() {
         put(
             &mut html,
-            format_args!(
-                "<div class=\"note\">{}</div>\n",
-                list(view.notes.iter().map(|note| escape(note)))
-            ),
+            format_args!("<div class=\"note\">{}</div>\n", list(view.notes.iter().map(|note| escape(note)))),
         );
     }
     html

@@ -33,20 +33,9 @@ pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> Stri
 }
 
 fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
-    let text = sentence(
-        lang,
-        r,
-        Naming {
-            room: false,
-            ..naming
-        },
-    );
+    let text = sentence(lang, r, Naming { room: false, ..naming });
     let place = if r.subject == r.room {
-        let scene = if naming.light_scene {
-            format!(" · {}", r.light_scene)
-        } else {
-            String::new()
-        };
+        let scene = if naming.light_scene { format!(" · {}", r.light_scene) } else { String::new() };
         format!("{}{scene}", word(lang, Term::RoomWord))
     } else {
         text.place
@@ -54,18 +43,11 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     let mark = if is_unverified(r) { "°" } else { "" };
     let name = escape(&words::quantity(lang, r.quantity));
     let verified = escape(words::verified(lang, &r.verified));
-    let source = if r.clause.is_empty() {
-        verified
-    } else {
-        format!("{} · {verified}", escape(&r.clause))
-    };
+    let source = if r.clause.is_empty() { verified } else { format!("{} · {verified}", escape(&r.clause)) };
     vec![
         format!("<span title=\"{name}\">{}</span>", symbol(&text.symbol)),
         escape(&place),
-        format!(
-            "<span class=\"w\">{}{mark}</span><br/><span class=\"note\">{source}</span>",
-            text.required
-        ),
+        format!("<span class=\"w\">{}{mark}</span><br/><span class=\"note\">{source}</span>", text.required),
         text.value,
         text.interval,
         text.margin,
@@ -75,39 +57,20 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
 
 /// The verdict's word and, below it, what must be known with it.
 fn verdict(lang: Lang, r: &Requirement) -> String {
-    let mut html = format!(
-        "<span class=\"{}\">{}</span>",
-        class_of(Some(r.verdict)),
-        words::verdict(lang, r.verdict)
-    );
+    let mut html =
+        format!("<span class=\"{}\">{}</span>", class_of(Some(r.verdict)), words::verdict(lang, r.verdict));
     if r.at_the_limit {
-        put(
-            &mut html,
-            format_args!(", {}", word(lang, Term::AtTheLimit)),
-        );
+        put(&mut html, format_args!(", {}", word(lang, Term::AtTheLimit)));
     }
     let mut lines: Vec<String> = Vec::new();
-    lines.extend(
-        r.value
-            .as_ref()
-            .err()
-            .map(|undefined| escape(&undefined.reason)),
-    );
+    lines.extend(r.value.as_ref().err().map(|undefined| escape(&undefined.reason)));
     lines.extend((!r.note.is_empty()).then(|| escape(&r.note)));
     lines.extend(
-        r.other_comparison
-            .map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
+        r.other_comparison.map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
     );
-    lines.extend(
-        r.at_risk
-            .iter()
-            .map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(risk))),
-    );
+    lines.extend(r.at_risk.iter().map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(risk))));
     for line in lines {
-        put(
-            &mut html,
-            format_args!("<br/><span class=\"note\">{line}</span>"),
-        );
+        put(&mut html, format_args!("<br/><span class=\"note\">{line}</span>"));
     }
     html
 }
@@ -131,16 +94,13 @@ pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String
         .filter(|r| any(&|l| l.quantity == r.quantity))
         .map(|r| r.quantity.key())
         .collect();
-    let names = keys
-        .into_iter()
-        .filter_map(|key| Quantity::parse(&key))
-        .map(|quantity| {
-            format!(
-                "{} — {}",
-                symbol(&words::symbol(lang, quantity, Statistic::Value)),
-                escape(&words::quantity(lang, quantity))
-            )
-        });
+    let names = keys.into_iter().filter_map(|key| Quantity::parse(&key)).map(|quantity| {
+        format!(
+            "{} — {}",
+            symbol(&words::symbol(lang, quantity, Statistic::Value)),
+            escape(&words::quantity(lang, quantity))
+        )
+    });
     notes.push(names.collect::<Vec<_>>().join("; "));
     let mut html = String::new();
     for note in notes {

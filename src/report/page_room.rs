@@ -48,49 +48,22 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         .sum::<f64>()
         .abs()
         / 2.0;
-    let power_w: Option<f64> = room
-        .types
-        .iter()
-        .map(|kind| kind.power_w.map(|power| power * kind.count as f64))
-        .sum();
-    let density = power_w
-        .filter(|power| *power > 0.0 && area_m2 > 0.0)
-        .map_or(String::new(), |power| {
-            format!(
-                "{} {}",
-                number::fixed(lang, power / area_m2, 2),
-                word(lang, Term::UnitPowerDensity)
-            )
-        });
-    let metres = |length| {
-        format!(
-            "{} {}",
-            number::metres(lang, length),
-            word(lang, Term::UnitMetre)
-        )
-    };
-    let [ceiling, walls, floor] = room
-        .reflectances
-        .map(|reflectance| number::fixed(lang, reflectance, 2));
+    let power_w: Option<f64> =
+        room.types.iter().map(|kind| kind.power_w.map(|power| power * kind.count as f64)).sum();
+    let density = power_w.filter(|power| *power > 0.0 && area_m2 > 0.0).map_or(String::new(), |power| {
+        format!("{} {}", number::fixed(lang, power / area_m2, 2), word(lang, Term::UnitPowerDensity))
+    });
+    let metres = |length| format!("{} {}", number::metres(lang, length), word(lang, Term::UnitMetre));
+    let [ceiling, walls, floor] = room.reflectances.map(|reflectance| number::fixed(lang, reflectance, 2));
     pairs(&[
         (
             word(lang, Term::FloorArea),
-            format!(
-                "{} {}",
-                number::fixed(lang, area_m2, 2),
-                word(lang, Term::UnitSquareMetre)
-            ),
+            format!("{} {}", number::fixed(lang, area_m2, 2), word(lang, Term::UnitSquareMetre)),
         ),
         (word(lang, Term::ClearHeight), metres(room.height_m)),
         (word(lang, Term::FloorLevel), metres(room.floor_m)),
-        (
-            word(lang, Term::Reflectances),
-            format!("{ceiling} / {walls} / {floor}"),
-        ),
-        (
-            word(lang, Term::RowOfNorm),
-            room.row.as_deref().map_or(String::new(), escape),
-        ),
+        (word(lang, Term::Reflectances), format!("{ceiling} / {walls} / {floor}")),
+        (word(lang, Term::RowOfNorm), room.row.as_deref().map_or(String::new(), escape)),
         (word(lang, Term::PowerDensity), density),
     ])
 }
@@ -105,30 +78,20 @@ fn schedule(types: &[TypeOutcome], lang: Lang) -> String {
         });
         vec![
             format!("<b>{}</b>", escape(&kind.name)),
-            format!(
-                "{}{}",
-                escape(&kind.description),
-                below(&escape(&kind.file))
-            ),
+            format!("{}{}", escape(&kind.description), below(&escape(&kind.file))),
             kind.count.to_string(),
             number::fixed(lang, kind.flux_lm, 0),
             rated,
-            kind.power_w
-                .map_or_else(dash, |power| number::fixed(lang, power, 1)),
+            kind.power_w.map_or_else(dash, |power| number::fixed(lang, power, 1)),
             maintenance(lang, kind),
         ]
     };
     let mut rows: Vec<Vec<String>> = types.iter().map(row).collect();
     if types.len() > 1 {
         let count: usize = types.iter().map(|kind| kind.count).sum();
-        let flux_lm: f64 = types
-            .iter()
-            .map(|kind| kind.flux_lm * kind.count as f64)
-            .sum();
-        let power_w: Option<f64> = types
-            .iter()
-            .map(|kind| kind.power_w.map(|power| power * kind.count as f64))
-            .sum();
+        let flux_lm: f64 = types.iter().map(|kind| kind.flux_lm * kind.count as f64).sum();
+        let power_w: Option<f64> =
+            types.iter().map(|kind| kind.power_w.map(|power| power * kind.count as f64)).sum();
         rows.push(vec![
             word(lang, Term::Total).to_owned(),
             String::new(),
@@ -139,16 +102,9 @@ fn schedule(types: &[TypeOutcome], lang: Lang) -> String {
             String::new(),
         ]);
     }
-    let rated = format!(
-        "{}{}",
-        word(lang, Term::FluxRated),
-        below(word(lang, Term::FluxRatio))
-    );
-    let factor = format!(
-        "{}{}",
-        word(lang, Term::MaintenanceFactor),
-        below(word(lang, Term::MaintenanceSplit))
-    );
+    let rated = format!("{}{}", word(lang, Term::FluxRated), below(word(lang, Term::FluxRatio)));
+    let factor =
+        format!("{}{}", word(lang, Term::MaintenanceFactor), below(word(lang, Term::MaintenanceSplit)));
     let head = [
         word(lang, Term::TypeWord),
         word(lang, Term::Description),
@@ -169,33 +125,20 @@ fn below(html: &str) -> String {
 /// MF and its factors; in Russian with the reserve factor beside them.
 fn maintenance(lang: Lang, kind: &TypeOutcome) -> String {
     let factor = kind.maintenance_factor;
-    let split = kind
-        .maintenance
-        .map(|factor| number::fixed(lang, factor, 2))
-        .join("·");
+    let split = kind.maintenance.map(|factor| number::fixed(lang, factor, 2)).join("·");
     let reserve = match lang {
         Lang::Ru if factor > 0.0 => format!(" (Кз = {})", number::fixed(lang, 1.0 / factor, 2)),
         Lang::En | Lang::Ru => String::new(),
     };
-    format!(
-        "{}{reserve}{}",
-        number::fixed(lang, factor, 2),
-        below(&split)
-    )
+    format!("{}{reserve}{}", number::fixed(lang, factor, 2), below(&split))
 }
 
 fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
     let mut rows = Vec::new();
     for area in &room.areas {
-        let of = area.of.as_ref().map_or(String::new(), |of| {
-            format!(" {} {}", word(lang, Term::Of), escape(of))
-        });
-        let excluded = area
-            .grid
-            .points
-            .iter()
-            .filter(|point| point.excluded.is_some())
-            .count();
+        let of =
+            area.of.as_ref().map_or(String::new(), |of| format!(" {} {}", word(lang, Term::Of), escape(of)));
+        let excluded = area.grid.points.iter().filter(|point| point.excluded.is_some()).count();
         let mut facts = grid_facts(lang, area);
         if area.grid.border_m > 0.0 {
             put(
@@ -209,13 +152,7 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
             );
         }
         if excluded > 0 {
-            put(
-                &mut facts,
-                format_args!(
-                    "; {}",
-                    phrase(lang, Term::Excluded, &[&excluded.to_string()])
-                ),
-            );
+            put(&mut facts, format_args!("; {}", phrase(lang, Term::Excluded, &[&excluded.to_string()])));
         }
         let name = format!(
             "{}<br/><span class=\"note\">{}{of}<br/>{facts}</span>",
@@ -223,43 +160,20 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
             words::area_kind(lang, area.kind)
         );
         for (index, field) in area.fields.iter().enumerate() {
-            let subject = Subject {
-                outcome,
-                room,
-                area,
-                field,
-            };
+            let subject = Subject { outcome, room, area, field };
             let text = |statistic| {
-                statistic_of(subject, statistic).map_or("—".to_owned(), |value| {
-                    number::value(lang, field.quantity, statistic, value)
-                })
+                statistic_of(subject, statistic)
+                    .map_or("—".to_owned(), |value| number::value(lang, field.quantity, statistic, value))
             };
-            let state = word(
-                lang,
-                if field.maintained {
-                    Term::MaintainedValues
-                } else {
-                    Term::InitialValues
-                },
-            );
+            let state =
+                word(lang, if field.maintained { Term::MaintainedValues } else { Term::InitialValues });
             let unit = number::unit(lang, field.quantity, Statistic::Mean);
             let unit = unit.trim_start_matches('\u{a0}');
             let label = symbol(&words::symbol(lang, field.quantity, Statistic::Value));
             rows.push(vec![
-                if index == 0 {
-                    name.clone()
-                } else {
-                    String::new()
-                },
-                if unit.is_empty() {
-                    label
-                } else {
-                    format!("{label}, {unit}")
-                },
-                format!(
-                    "{}<br/><span class=\"note\">{state}</span>",
-                    escape(&field.light_scene)
-                ),
+                if index == 0 { name.clone() } else { String::new() },
+                if unit.is_empty() { label } else { format!("{label}, {unit}") },
+                format!("{}<br/><span class=\"note\">{state}</span>", escape(&field.light_scene)),
                 text(Statistic::Mean),
                 text(Statistic::Min),
                 text(Statistic::Max),
@@ -282,13 +196,8 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
 
 fn flux(balance: &FluxBalance, lang: Lang) -> String {
     let lumen = word(lang, Term::UnitLumen);
-    let flux = |flux: Interval| {
-        format!(
-            "{} {lumen} ({})",
-            number::fixed(lang, flux.value, 0),
-            span(lang, flux, 0)
-        )
-    };
+    let flux =
+        |flux: Interval| format!("{} {lumen} ({})", number::fixed(lang, flux.value, 0), span(lang, flux, 0));
     let share = |share: Interval| {
         let ends = if share.lo.is_finite() && share.hi.is_finite() {
             format!(
@@ -299,24 +208,15 @@ fn flux(balance: &FluxBalance, lang: Lang) -> String {
         } else {
             String::new()
         };
-        format!(
-            "{}\u{a0}%{ends}",
-            number::fixed(lang, 100.0 * share.value, 2)
-        )
+        format!("{}\u{a0}%{ends}", number::fixed(lang, 100.0 * share.value, 2))
     };
     let mut html = pairs(&[
         (word(lang, Term::LightScene), escape(&balance.light_scene)),
-        (
-            word(lang, Term::Emitted),
-            format!("{} {lumen}", number::fixed(lang, balance.emitted_lm, 0)),
-        ),
+        (word(lang, Term::Emitted), format!("{} {lumen}", number::fixed(lang, balance.emitted_lm, 0))),
         (word(lang, Term::Absorbed), flux(balance.absorbed)),
         (word(lang, Term::Escaped), flux(balance.escaped)),
         (word(lang, Term::Residual), share(balance.residual_share)),
-        (
-            word(lang, Term::Utilisation),
-            balance.utilisation.map_or(String::new(), share),
-        ),
+        (word(lang, Term::Utilisation), balance.utilisation.map_or(String::new(), share)),
     ]);
     let rows: Vec<Vec<String>> = balance
         .surfaces

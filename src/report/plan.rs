@@ -24,14 +24,9 @@ pub struct Subject<'a> {
 /// Subjects of all drawings in project order.
 pub fn subjects(outcome: &Outcome) -> impl Iterator<Item = Subject<'_>> {
     outcome.rooms.iter().flat_map(move |room| {
-        room.areas.iter().flat_map(move |area| {
-            area.fields.iter().map(move |field| Subject {
-                outcome,
-                room,
-                area,
-                field,
-            })
-        })
+        room.areas
+            .iter()
+            .flat_map(move |area| area.fields.iter().map(move |field| Subject { outcome, room, area, field }))
     })
 }
 
@@ -40,20 +35,13 @@ pub fn files(outcome: &Outcome, lang: Lang) -> Vec<(String, String)> {
     let mut used: Vec<String> = Vec::new();
     let mut files = Vec::new();
     for subject in subjects(outcome) {
-        let mut parts = vec![
-            subject.area.name.as_str(),
-            subject.field.light_scene.as_str(),
-        ];
+        let mut parts = vec![subject.area.name.as_str(), subject.field.light_scene.as_str()];
         if outcome.rooms.len() > 1 {
             parts.insert(0, &subject.room.name);
         }
         let key = subject.field.quantity.key();
         parts.push(&key);
-        let stem = parts
-            .into_iter()
-            .map(file_name)
-            .collect::<Vec<_>>()
-            .join("-");
+        let stem = parts.into_iter().map(file_name).collect::<Vec<_>>().join("-");
         let mut name = format!("{stem}.svg");
         let mut number = 1;
         while used.contains(&name.to_lowercase()) {
@@ -73,11 +61,7 @@ fn file_name(name: &str) -> String {
         if kept.len() + c.len_utf8() > 60 {
             break;
         }
-        kept.push(if c.is_alphanumeric() || matches!(c, '-' | '_') {
-            c
-        } else {
-            '_'
-        });
+        kept.push(if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' });
     }
     if kept.is_empty() { "_".into() } else { kept }
 }
@@ -99,24 +83,13 @@ pub fn draw(subject: Subject<'_>, lang: Lang) -> String {
     drawing.window();
     drawing.axes();
     drawing.legend();
-    let title = format!(
-        "{} · {} · {}",
-        subject.room.name,
-        subject.area.name,
-        subject.field.quantity.key()
-    );
+    let title = format!("{} · {} · {}", subject.room.name, subject.area.name, subject.field.quantity.key());
     drawing.canvas.finish(&title)
 }
 
 fn values(subject: Subject<'_>) -> Vec<Option<f64>> {
     let points = subject.field.points.iter();
-    points
-        .map(|point| {
-            point
-                .map(|point| point.value)
-                .filter(|value| value.is_finite())
-        })
-        .collect()
+    points.map(|point| point.map(|point| point.value).filter(|value| value.is_finite())).collect()
 }
 
 /// The requirement on the mean of what is drawn, else on its minimum.
@@ -139,16 +112,9 @@ pub fn grid_facts(lang: Lang, area: &AreaOutcome) -> String {
     if grid.columns == 0 {
         return phrase(lang, Term::FreePoints, &[&grid.points.len().to_string()]);
     }
-    let [u, v] = grid
-        .spacing_m
-        .map(|spacing| number::fixed(lang, spacing, 2));
+    let [u, v] = grid.spacing_m.map(|spacing| number::fixed(lang, spacing, 2));
     let metre = word(lang, Term::UnitMetre);
-    format!(
-        "{} {} × {}, p = {u} × {v}\u{a0}{metre}",
-        word(lang, Term::GridWord),
-        grid.columns,
-        grid.rows
-    )
+    format!("{} {} × {}, p = {u} × {v}\u{a0}{metre}", word(lang, Term::GridWord), grid.columns, grid.rows)
 }
 
 /// `MF = 0.80`, or the range over the room's luminaire types.
@@ -157,11 +123,7 @@ pub fn maintenance(lang: Lang, room: &RoomOutcome) -> Option<String> {
     let low = factors.clone().reduce(f64::min)?;
     let high = factors.reduce(f64::max)?;
     let text = |factor| number::fixed(lang, factor, 2);
-    let range = if text(low) == text(high) {
-        text(low)
-    } else {
-        format!("{}…{}", text(low), text(high))
-    };
+    let range = if text(low) == text(high) { text(low) } else { format!("{}…{}", text(low), text(high)) };
     Some(format!("MF = {range}"))
 }
 
@@ -176,11 +138,7 @@ pub fn statistic_of(subject: Subject<'_>, statistic: Statistic) -> Option<f64> {
             && value.statistic == statistic.key()
     });
     if let Some(measured) = measured {
-        return measured
-            .estimate
-            .as_ref()
-            .ok()
-            .map(|estimate| estimate.value);
+        return measured.estimate.as_ref().ok().map(|estimate| estimate.value);
     }
     let known: Vec<f64> = values(subject).into_iter().flatten().collect();
     let mean = known.iter().sum::<f64>() / known.len() as f64;
@@ -211,12 +169,7 @@ mod tests {
         outcome.rooms[0].name = "室".repeat(300);
         let files = files(&outcome, Lang::En);
         let mut names: Vec<String> = files.iter().map(|(name, _)| name.to_lowercase()).collect();
-        assert!(
-            names
-                .iter()
-                .all(|name| !name.contains(['/', '\\', '<', '"', ':'])),
-            "{names:?}"
-        );
+        assert!(names.iter().all(|name| !name.contains(['/', '\\', '<', '"', ':'])), "{names:?}");
         assert!(names.iter().all(|name| name.len() < 256), "{names:?}");
         names.sort();
         names.dedup();
@@ -229,9 +182,8 @@ mod tests {
         let subject = subjects(&outcome).next().expect("one");
         let svg = draw(subject, Lang::En);
         let document = roxmltree::Document::parse(&svg).expect("well-formed");
-        let bold = |n: &roxmltree::Node<'_, '_>| {
-            n.attribute("stroke") == Some("#B01826") && n.has_tag_name("path")
-        };
+        let bold =
+            |n: &roxmltree::Node<'_, '_>| n.attribute("stroke") == Some("#B01826") && n.has_tag_name("path");
         assert_eq!(document.descendants().filter(bold).count(), 1);
         let texts: Vec<&str> = document
             .descendants()
@@ -239,10 +191,7 @@ mod tests {
             .filter_map(|n| n.text())
             .map(str::trim)
             .collect();
-        assert!(
-            texts.iter().any(|t| t.starts_with("min "))
-                && texts.iter().any(|t| t.starts_with("max "))
-        );
+        assert!(texts.iter().any(|t| t.starts_with("min ")) && texts.iter().any(|t| t.starts_with("max ")));
         assert!(texts.contains(&"500") && texts.contains(&"C0") && texts.contains(&"x, m"));
         assert!(svg.len() < 120_000, "{} bytes", svg.len());
     }
@@ -250,9 +199,7 @@ mod tests {
     #[test]
     fn a_point_at_the_right_of_a_wall_is_drawn_at_the_right() {
         let outcome = sample::outcome();
-        let wall = subjects(&outcome)
-            .find(|s| s.area.grid.normal.z.abs() < 0.1)
-            .expect("a wall");
+        let wall = subjects(&outcome).find(|s| s.area.grid.normal.z.abs() < 0.1).expect("a wall");
         let view = View::of(wall.room, wall.area, CORNER, WINDOW);
         assert_eq!(view.sight, Sight::Elevation);
         // The north wall seen from the south: east is right, up is up.

@@ -20,13 +20,8 @@ pub(super) const INK: Rgb = [32, 36, 42];
 pub(super) const PALE: Rgb = [120, 126, 134];
 pub(super) const LIMIT: Rgb = [176, 24, 38];
 /// From low to high; light enough for black letters.
-pub(super) const COLOURS: [Rgb; 5] = [
-    [206, 219, 236],
-    [222, 236, 231],
-    [250, 246, 219],
-    [250, 225, 176],
-    [243, 190, 146],
-];
+pub(super) const COLOURS: [Rgb; 5] =
+    [[206, 219, 236], [222, 236, 231], [250, 246, 219], [250, 225, 176], [243, 190, 146]];
 
 /// A drawing in progress.
 pub(super) struct Drawing<'a> {
@@ -41,19 +36,11 @@ pub(super) struct Drawing<'a> {
 }
 
 pub(super) fn lettering(size: f64, anchor: Anchor) -> Lettering {
-    Lettering {
-        size,
-        anchor,
-        weight: Weight::Normal,
-        colour: INK,
-    }
+    Lettering { size, anchor, weight: Weight::Normal, colour: INK }
 }
 
 pub(super) fn bold(size: f64, anchor: Anchor) -> Lettering {
-    Lettering {
-        weight: Weight::Bold,
-        ..lettering(size, anchor)
-    }
+    Lettering { weight: Weight::Bold, ..lettering(size, anchor) }
 }
 
 pub(super) fn cut(text: &str, size: f64, width: f64) -> String {
@@ -61,10 +48,7 @@ pub(super) fn cut(text: &str, size: f64, width: f64) -> String {
     if text.chars().count() <= room {
         text.to_owned()
     } else {
-        text.chars()
-            .take(room.saturating_sub(1))
-            .chain(['…'])
-            .collect()
+        text.chars().take(room.saturating_sub(1)).chain(['…']).collect()
     }
 }
 
@@ -77,60 +61,37 @@ impl Drawing<'_> {
         let Subject { room, area, .. } = self.subject;
         let head = format!("{} {} · {}", room.number, room.name, area.name);
         let head = cut(head.trim_start(), 15.0, WIDTH - 24.0);
-        self.canvas
-            .text([12.0, 16.0], &head, bold(15.0, Anchor::Start));
+        self.canvas.text([12.0, 16.0], &head, bold(15.0, Anchor::Start));
         let lines = [self.quantity(), self.conditions(), self.results()];
         for (line, y) in lines.into_iter().zip([36.0, 53.0, 70.0]) {
             let line = cut(&line, 11.0, WIDTH - 24.0);
-            self.canvas
-                .text([12.0, y], &line, lettering(11.0, Anchor::Start));
+            self.canvas.text([12.0, y], &line, lettering(11.0, Anchor::Start));
         }
-        self.canvas
-            .line(&[[12.0, 82.0], [WIDTH - 12.0, 82.0]], PALE, 0.5);
+        self.canvas.line(&[[12.0, 82.0], [WIDTH - 12.0, 82.0]], PALE, 0.5);
     }
 
     fn quantity(&self) -> String {
-        let Subject {
-            room, area, field, ..
-        } = self.subject;
+        let Subject { room, area, field, .. } = self.subject;
         let lang = self.lang;
-        let state = if field.maintained {
-            Term::MaintainedValues
-        } else {
-            Term::InitialValues
-        };
+        let state = if field.maintained { Term::MaintainedValues } else { Term::InitialValues };
         let first = area.grid.points.first();
         let height_m = first.map_or(area.grid.origin.z, |point| point.position.z) - room.floor_m;
         let place = match self.view.sight {
             Sight::Plan => {
                 let height = number::fixed(lang, height_m, 2);
-                format!(
-                    "{} {height} {}",
-                    word(lang, Term::PlaneHeight),
-                    word(lang, Term::UnitMetre)
-                )
+                format!("{} {height} {}", word(lang, Term::PlaneHeight), word(lang, Term::UnitMetre))
             }
             Sight::Elevation => word(lang, Term::ViewedFromRoom).to_owned(),
         };
-        format!(
-            "{}, {} · {place}",
-            words::quantity(lang, field.quantity),
-            word(lang, state)
-        )
+        format!("{}, {} · {place}", words::quantity(lang, field.quantity), word(lang, state))
     }
 
     fn conditions(&self) -> String {
-        let Subject {
-            room, area, field, ..
-        } = self.subject;
+        let Subject { room, area, field, .. } = self.subject;
         let lang = self.lang;
         let mut parts = vec![grid_facts(lang, area)];
         parts.extend(maintenance(lang, room));
-        parts.push(format!(
-            "{}: {}",
-            word(lang, Term::LightScene),
-            field.light_scene
-        ));
+        parts.push(format!("{}: {}", word(lang, Term::LightScene), field.light_scene));
         parts.join(" · ")
     }
 
@@ -138,12 +99,7 @@ impl Drawing<'_> {
         let quantity = self.subject.field.quantity;
         let lang = self.lang;
         let mut parts = Vec::new();
-        for statistic in [
-            Statistic::Mean,
-            Statistic::Min,
-            Statistic::Max,
-            Statistic::U0,
-        ] {
+        for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max, Statistic::U0] {
             if let Some(value) = statistic_of(self.subject, statistic) {
                 let unit = number::unit(lang, quantity, statistic);
                 let value = self.text_of(statistic, value);
@@ -154,17 +110,10 @@ impl Drawing<'_> {
             let (limit, is_minimum) = bound(requirement.bound);
             let limit = self.text_of(requirement.statistic, limit);
             let unit = number::unit(lang, quantity, requirement.statistic);
-            let term = if is_minimum {
-                Term::AtLeast
-            } else {
-                Term::AtMost
-            };
+            let term = if is_minimum { Term::AtLeast } else { Term::AtMost };
             let required = phrase(lang, term, &[&format!("{limit}{unit}")]);
             let symbol = self.short(requirement.statistic);
-            parts.push(format!(
-                "{}: {symbol} {required}",
-                word(lang, Term::Required)
-            ));
+            parts.push(format!("{}: {symbol} {required}", word(lang, Term::Required)));
         }
         parts.join(" · ")
     }
@@ -186,14 +135,9 @@ impl Drawing<'_> {
             .unwrap_or(100.0);
         let ticks = |low: f64, high: f64| {
             let first = (low / step).ceil() as i64;
-            (first..)
-                .map(move |i| i as f64 * step)
-                .take_while(move |at| *at <= high)
+            (first..).map(move |i| i as f64 * step).take_while(move |at| *at <= high)
         };
-        let small = Lettering {
-            colour: PALE,
-            ..lettering(9.0, Anchor::Middle)
-        };
+        let small = Lettering { colour: PALE, ..lettering(9.0, Anchor::Middle) };
         let names = match self.view.sight {
             Sight::Plan => ["x", "y"],
             Sight::Elevation => ["u", "v"],
@@ -201,36 +145,24 @@ impl Drawing<'_> {
         for at in ticks(low.x, high.x) {
             let x = self.view.px_of_flat(DVec2::new(at, low.y))[0];
             self.canvas.line(&[[x, to[1]], [x, to[1] + 4.0]], PALE, 0.5);
-            self.canvas
-                .text([x, to[1] + 11.0], &number::metres(self.lang, at), small);
+            self.canvas.text([x, to[1] + 11.0], &number::metres(self.lang, at), small);
         }
         for at in ticks(low.y, high.y) {
             let y = self.view.px_of_flat(DVec2::new(low.x, at))[1];
-            self.canvas
-                .line(&[[from[0] - 4.0, y], [from[0], y]], PALE, 0.5);
+            self.canvas.line(&[[from[0] - 4.0, y], [from[0], y]], PALE, 0.5);
             self.canvas.text(
                 [from[0] - 7.0, y],
                 &number::metres(self.lang, at),
-                Lettering {
-                    anchor: Anchor::End,
-                    ..small
-                },
+                Lettering { anchor: Anchor::End, ..small },
             );
         }
         let metre = word(self.lang, Term::UnitMetre);
         self.canvas.text(
             [to[0], to[1] + 22.0],
             &format!("{}, {metre}", names[0]),
-            Lettering {
-                anchor: Anchor::End,
-                ..small
-            },
+            Lettering { anchor: Anchor::End, ..small },
         );
-        self.canvas.text(
-            [from[0] - 34.0, from[1] + 4.0],
-            &format!("{}, {metre}", names[1]),
-            small,
-        );
+        self.canvas.text([from[0] - 34.0, from[1] + 4.0], &format!("{}, {metre}", names[1]), small);
     }
 
     pub(super) fn legend(&mut self) {
@@ -243,23 +175,13 @@ impl Drawing<'_> {
             .unwrap_or(0.1);
         let length = length_m * self.view.px_per_m;
         let small = lettering(9.5, Anchor::Start);
-        self.canvas
-            .rectangle([from, y - 2.0], [from + length / 2.0, y + 2.0], INK, 1.0);
+        self.canvas.rectangle([from, y - 2.0], [from + length / 2.0, y + 2.0], INK, 1.0);
         self.canvas.ring(
-            &[
-                [from, y - 2.0],
-                [from + length, y - 2.0],
-                [from + length, y + 2.0],
-                [from, y + 2.0],
-            ],
+            &[[from, y - 2.0], [from + length, y - 2.0], [from + length, y + 2.0], [from, y + 2.0]],
             INK,
             0.7,
         );
-        let text = format!(
-            "{} {}",
-            number::metres(lang, length_m),
-            word(lang, Term::UnitMetre)
-        );
+        let text = format!("{} {}", number::metres(lang, length_m), word(lang, Term::UnitMetre));
         self.canvas.text([from + length + 6.0, y], &text, small);
         let mut x = from + length + 6.0 + text_width(&text, 9.5) + 18.0;
         let has_lines = self.subject.area.grid.columns > 0;
@@ -275,18 +197,16 @@ impl Drawing<'_> {
             self.canvas.text([x + 27.0, y], &text, small);
             x += 27.0 + text_width(&text, 9.5) + 14.0;
         }
-        if self.subject.area.grid.points.iter().any(|p| {
-            matches!(
-                p.excluded,
-                Some(Exclusion::InsideFurniture | Exclusion::InOtherArea)
-            )
-        }) {
+        if self
+            .subject
+            .area
+            .grid
+            .points
+            .iter()
+            .any(|p| matches!(p.excluded, Some(Exclusion::InsideFurniture | Exclusion::InOtherArea)))
+        {
             for offset in [0.0, 5.0, 10.0] {
-                self.canvas.line(
-                    &[[x + offset, y + 5.0], [x + offset + 8.0, y - 5.0]],
-                    PALE,
-                    0.6,
-                );
+                self.canvas.line(&[[x + offset, y + 5.0], [x + offset + 8.0, y - 5.0]], PALE, 0.6);
             }
             let text = word(lang, Term::ExcludedPoints);
             self.canvas.text([x + 22.0, y], text, small);
@@ -294,11 +214,7 @@ impl Drawing<'_> {
         }
         if self.view.sight == Sight::Plan && !self.subject.room.luminaires.is_empty() {
             self.canvas.line(&[[x, y], [x + 16.0, y]], INK, 0.9);
-            self.canvas.polygon(
-                &[[x + 18.0, y], [x + 13.0, y - 2.4], [x + 13.0, y + 2.4]],
-                INK,
-                1.0,
-            );
+            self.canvas.polygon(&[[x + 18.0, y], [x + 13.0, y - 2.4], [x + 13.0, y + 2.4]], INK, 1.0);
             self.canvas.text([x + 23.0, y], "C0", small);
         }
         self.scale_of_colours([from, y + 18.0]);
@@ -322,10 +238,7 @@ impl Drawing<'_> {
             if let Some((level, is_limit)) = levels.get(index) {
                 let text = self.text_of(Statistic::Mean, *level);
                 let look = if *is_limit {
-                    Lettering {
-                        colour: LIMIT,
-                        ..bold(9.0, Anchor::Middle)
-                    }
+                    Lettering { colour: LIMIT, ..bold(9.0, Anchor::Middle) }
                 } else {
                     lettering(9.0, Anchor::Middle)
                 };
@@ -333,11 +246,7 @@ impl Drawing<'_> {
             }
         }
         let end = at[0] + (count as f64 + 1.0) * width;
-        self.canvas.ring(
-            &[at, [end, at[1]], [end, at[1] + 9.0], [at[0], at[1] + 9.0]],
-            PALE,
-            0.5,
-        );
+        self.canvas.ring(&[at, [end, at[1]], [end, at[1] + 9.0], [at[0], at[1] + 9.0]], PALE, 0.5);
         let unit = number::unit(self.lang, self.subject.field.quantity, Statistic::Mean);
         self.canvas.text(
             [end + 6.0, at[1] + 5.0],
@@ -351,17 +260,12 @@ impl Drawing<'_> {
         let Some([(_, min), (_, max)]) = self.extreme_points() else {
             return Vec::new();
         };
-        let limit = self
-            .limit
-            .map(|r| bound(r.bound).0)
-            .filter(|limit| *limit > min && *limit < max);
+        let limit = self.limit.map(|r| bound(r.bound).0).filter(|limit| *limit > min && *limit < max);
         let nice = levels(min, max);
         let gap = (max - min) / (nice.len() as f64 + 1.0);
         let mut all: Vec<(f64, bool)> = nice
             .into_iter()
-            .filter(|level| {
-                limit.is_none_or(|limit| (level - limit).abs() > 0.4 * gap.min(0.5 * limit))
-            })
+            .filter(|level| limit.is_none_or(|limit| (level - limit).abs() > 0.4 * gap.min(0.5 * limit)))
             .map(|level| (level, false))
             .chain(limit.map(|limit| (limit, true)))
             .collect();
@@ -380,12 +284,7 @@ impl Drawing<'_> {
 
     /// Reserves a box around a place unless another text is there.
     pub(super) fn take(&mut self, at: Px, width: f64, height: f64) -> bool {
-        let new = [
-            at[0] - width / 2.0,
-            at[1] - height / 2.0,
-            at[0] + width / 2.0,
-            at[1] + height / 2.0,
-        ];
+        let new = [at[0] - width / 2.0, at[1] - height / 2.0, at[0] + width / 2.0, at[1] + height / 2.0];
         let free = self
             .taken
             .iter()
@@ -403,10 +302,7 @@ pub(super) fn colour(share: f64) -> Rgb {
     let index = (place.floor() as usize).min(COLOURS.len() - 2);
     let part = place - index as f64;
     std::array::from_fn(|i| {
-        let (a, b) = (
-            f64::from(COLOURS[index][i]),
-            f64::from(COLOURS[index + 1][i]),
-        );
+        let (a, b) = (f64::from(COLOURS[index][i]), f64::from(COLOURS[index + 1][i]));
         (a + (b - a) * part).round() as u8
     })
 }

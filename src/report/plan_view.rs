@@ -44,28 +44,12 @@ impl View {
             (Sight::Plan, DVec3::X, DVec3::Y, DVec3::ZERO)
         } else {
             let right = DVec3::Z.cross(grid.normal).normalize_or(DVec3::X);
-            (
-                Sight::Elevation,
-                right,
-                grid.normal.cross(right),
-                grid.origin,
-            )
+            (Sight::Elevation, right, grid.normal.cross(right), grid.origin)
         };
-        let mut view = Self {
-            sight,
-            right,
-            up,
-            origin,
-            low: DVec2::ZERO,
-            high: DVec2::ONE,
-            px_per_m: 1.0,
-            corner,
-        };
+        let mut view =
+            Self { sight, right, up, origin, low: DVec2::ZERO, high: DVec2::ONE, px_per_m: 1.0, corner };
         if sight == Sight::Elevation {
-            let first = corners(grid)
-                .map(|at| view.flat(at))
-                .reduce(DVec2::min)
-                .unwrap_or_default();
+            let first = corners(grid).map(|at| view.flat(at)).reduce(DVec2::min).unwrap_or_default();
             view.origin += right * first.x + view.up * first.y;
         }
         view.fit(room, area, size);
@@ -77,9 +61,7 @@ impl View {
         let span = |places: &[DVec2]| {
             places
                 .iter()
-                .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| {
-                    (low.min(*at), high.max(*at))
-                })
+                .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(*at), high.max(*at)))
         };
         let of_area: Vec<DVec2> = corners(&area.grid).map(|at| self.flat(at)).collect();
         let (mut low, mut high) = span(&of_area);
@@ -93,10 +75,7 @@ impl View {
                 (low, high) = (low.min(room_low), high.max(room_high));
             } else {
                 let near = DVec2::splat(0.6 * extent);
-                (low, high) = (
-                    (low - near).max(room_low.min(low)),
-                    (high + near).min(room_high.max(high)),
-                );
+                (low, high) = ((low - near).max(room_low.min(low)), (high + near).min(room_high.max(high)));
             }
         }
         let margin = DVec2::splat(0.03 * (high - low).max_element().max(0.5));
@@ -145,22 +124,13 @@ fn corners(grid: &Grid) -> impl Iterator<Item = DVec3> + '_ {
         grid.origin + grid.edge_v,
     ];
     let of_rectangle = rectangle.into_iter().filter(move |_| grid.columns > 0);
-    let of_points = grid
-        .points
-        .iter()
-        .map(|point| point.position)
-        .filter(move |_| grid.columns == 0);
-    of_rectangle
-        .chain(of_points)
-        .chain(grid.outline.iter().copied())
+    let of_points = grid.points.iter().map(|point| point.position).filter(move |_| grid.columns == 0);
+    of_rectangle.chain(of_points).chain(grid.outline.iter().copied())
 }
 
 /// Where a place in units of cells lies in the room.
 pub fn world_from_cells(grid: &Grid, place: Place) -> DVec3 {
-    let first = grid
-        .points
-        .first()
-        .map_or(grid.origin, |point| point.position);
+    let first = grid.points.first().map_or(grid.origin, |point| point.position);
     let step = |edge: DVec3, spacing: f64| edge.normalize_or_zero() * spacing;
     first
         + step(grid.edge_u, grid.spacing_m[0]) * (place[0] - 0.5)

@@ -18,13 +18,8 @@ impl Drawing<'_> {
         self.canvas.rectangle(from, to, [247, 247, 245], 1.0);
         self.canvas.clip(from, to);
         if self.view.sight == Sight::Plan {
-            let outline: Vec<Px> = self
-                .subject
-                .room
-                .footprint
-                .iter()
-                .map(|at| self.view.px_of_flat(*at))
-                .collect();
+            let outline: Vec<Px> =
+                self.subject.room.footprint.iter().map(|at| self.view.px_of_flat(*at)).collect();
             if outline.len() > 2 {
                 self.canvas.polygon(&outline, [255, 255, 255], 1.0);
                 self.canvas.ring(&outline, INK, 2.0);
@@ -32,14 +27,7 @@ impl Drawing<'_> {
         }
         let lines = self.false_colours();
         self.exclusions();
-        let outline: Vec<Px> = self
-            .subject
-            .area
-            .grid
-            .outline
-            .iter()
-            .map(|at| self.view.px(*at))
-            .collect();
+        let outline: Vec<Px> = self.subject.area.grid.outline.iter().map(|at| self.view.px(*at)).collect();
         if outline.len() > 2 {
             self.canvas.ring(&outline, [70, 90, 120], 1.0);
         }
@@ -59,8 +47,7 @@ impl Drawing<'_> {
         }
         self.point_values();
         self.canvas.end_clip();
-        self.canvas
-            .ring(&[from, [to[0], from[1]], to, [from[0], to[1]]], PALE, 0.5);
+        self.canvas.ring(&[from, [to[0], from[1]], to, [from[0], to[1]]], PALE, 0.5);
     }
 
     /// Fills the regions between levels and returns the lines: level, contours, whether it is the limit.
@@ -70,31 +57,17 @@ impl Drawing<'_> {
             return Vec::new();
         }
         let values = self.values.clone();
-        let values = Values {
-            columns: grid.columns,
-            rows: grid.rows,
-            by_point: &values,
-        };
+        let values = Values { columns: grid.columns, rows: grid.rows, by_point: &values };
         let mut lines = Vec::new();
         let levels = self.levels();
         let steps = levels.len() as f64;
-        for (index, (level, is_limit)) in std::iter::once((f64::NEG_INFINITY, false))
-            .chain(levels)
-            .enumerate()
+        for (index, (level, is_limit)) in
+            std::iter::once((f64::NEG_INFINITY, false)).chain(levels).enumerate()
         {
             let contours = contours(&values, level);
-            let regions: Vec<Vec<Px>> = contours
-                .regions
-                .iter()
-                .map(|ring| self.ring_px(ring))
-                .collect();
-            let share = if steps > 0.0 {
-                index as f64 / steps
-            } else {
-                0.5
-            };
-            self.canvas
-                .regions(regions.iter().map(Vec::as_slice), colour(share));
+            let regions: Vec<Vec<Px>> = contours.regions.iter().map(|ring| self.ring_px(ring)).collect();
+            let share = if steps > 0.0 { index as f64 / steps } else { 0.5 };
+            self.canvas.regions(regions.iter().map(Vec::as_slice), colour(share));
             if level.is_finite() {
                 lines.push((level, contours, is_limit));
             }
@@ -103,28 +76,14 @@ impl Drawing<'_> {
     }
 
     fn ring_px(&self, ring: &[[f64; 2]]) -> Vec<Px> {
-        ring.iter()
-            .map(|place| {
-                self.view
-                    .px(world_from_cells(&self.subject.area.grid, *place))
-            })
-            .collect()
+        ring.iter().map(|place| self.view.px(world_from_cells(&self.subject.area.grid, *place))).collect()
     }
 
     fn isolines(&mut self, lines: &[(f64, Contours, bool)]) {
         for (_, contours, is_limit) in lines {
-            let places: Vec<Vec<Px>> = contours
-                .lines
-                .iter()
-                .map(|line| self.ring_px(line))
-                .collect();
-            let (colour, width) = if *is_limit {
-                (LIMIT, 2.4)
-            } else {
-                ([92, 100, 112], 0.75)
-            };
-            self.canvas
-                .lines(places.iter().map(Vec::as_slice), colour, width);
+            let places: Vec<Vec<Px>> = contours.lines.iter().map(|line| self.ring_px(line)).collect();
+            let (colour, width) = if *is_limit { (LIMIT, 2.4) } else { ([92, 100, 112], 0.75) };
+            self.canvas.lines(places.iter().map(Vec::as_slice), colour, width);
         }
     }
 
@@ -136,10 +95,7 @@ impl Drawing<'_> {
         };
         let places = self.ring_px(line);
         let (from, to) = (self.view.corner, self.view.end());
-        let look = Lettering {
-            colour: if is_limit { LIMIT } else { INK },
-            ..bold(10.0, Anchor::Middle)
-        };
+        let look = Lettering { colour: if is_limit { LIMIT } else { INK }, ..bold(10.0, Anchor::Middle) };
         let count = places.len();
         for step in 0..count.min(24) {
             let index = (count / 2 + (step * count / 24.min(count)) * 7) % count;
@@ -167,10 +123,7 @@ impl Drawing<'_> {
         let grid = &self.subject.area.grid;
         let mut strokes: Vec<[Px; 2]> = Vec::new();
         for point in &grid.points {
-            if !matches!(
-                point.excluded,
-                Some(Exclusion::InsideFurniture | Exclusion::InOtherArea)
-            ) {
+            if !matches!(point.excluded, Some(Exclusion::InsideFurniture | Exclusion::InOtherArea)) {
                 continue;
             }
             let (c, r) = (point.column as f64, point.row as f64);
@@ -178,22 +131,16 @@ impl Drawing<'_> {
                 let low = ([c + share, r], [c, r + share]);
                 let high = ([c + 1.0, r + share], [c + share, r + 1.0]);
                 for (from, to) in [low, high] {
-                    strokes
-                        .push([from, to].map(|place| self.view.px(world_from_cells(grid, place))));
+                    strokes.push([from, to].map(|place| self.view.px(world_from_cells(grid, place))));
                 }
             }
         }
-        self.canvas
-            .lines(strokes.iter().map(<[Px; 2]>::as_slice), PALE, 0.6);
+        self.canvas.lines(strokes.iter().map(<[Px; 2]>::as_slice), PALE, 0.6);
     }
 
     fn luminaire(&mut self, luminaire: &LuminaireOutcome) {
         let centre = self.view.px(luminaire.position);
-        let outline: Vec<Px> = luminaire
-            .outline
-            .iter()
-            .map(|at| self.view.px(*at))
-            .collect();
+        let outline: Vec<Px> = luminaire.outline.iter().map(|at| self.view.px(*at)).collect();
         if outline.len() > 2 {
             self.canvas.polygon(&outline, [255, 255, 255], 0.55);
             self.canvas.ring(&outline, INK, 1.0);
@@ -206,14 +153,11 @@ impl Drawing<'_> {
             let start = DVec2::from(centre) + along * 7.0;
             let tip = start + along * 9.0;
             let wing = |side: f64| (tip - along * 4.0 + along.perp() * side * 2.2).to_array();
-            self.canvas
-                .line(&[start.to_array(), tip.to_array()], INK, 0.9);
-            self.canvas
-                .polygon(&[tip.to_array(), wing(1.0), wing(-1.0)], INK, 1.0);
+            self.canvas.line(&[start.to_array(), tip.to_array()], INK, 0.9);
+            self.canvas.polygon(&[tip.to_array(), wing(1.0), wing(-1.0)], INK, 1.0);
         }
         let letters: String = luminaire.kind.chars().take(6).collect();
-        self.canvas
-            .text(centre, &letters, bold(9.0, Anchor::Middle));
+        self.canvas.text(centre, &letters, bold(9.0, Anchor::Middle));
         self.take(centre, text_width(&letters, 9.0) + 2.0, 11.0);
     }
 
@@ -226,69 +170,39 @@ impl Drawing<'_> {
                 continue;
             };
             let at = self.view.px(point.position);
-            let text = format!(
-                "{} {}",
-                word(self.lang, term),
-                self.text_of(Statistic::Min, value)
-            );
+            let text = format!("{} {}", word(self.lang, term), self.text_of(Statistic::Min, value));
             let half = text_width(&text, 10.0) / 2.0 + 3.0;
             let (from, to) = (self.view.corner, self.view.end());
-            let x = at[0].clamp(
-                from[0] + half + 1.0,
-                (to[0] - half - 1.0).max(from[0] + half + 1.0),
-            );
+            let x = at[0].clamp(from[0] + half + 1.0, (to[0] - half - 1.0).max(from[0] + half + 1.0));
             let below = at[1] + 12.0 < to[1] - 6.0;
             let y = if below { at[1] + 12.0 } else { at[1] - 12.0 };
             self.canvas.circle(at, 3.4, INK, false);
             self.canvas.circle(at, 1.2, INK, true);
-            self.canvas
-                .rectangle([x - half, y - 6.5], [x + half, y + 6.5], INK, 0.85);
+            self.canvas.rectangle([x - half, y - 6.5], [x + half, y + 6.5], INK, 0.85);
             self.canvas.text(
                 [x, y],
                 &text,
-                Lettering {
-                    colour: [255, 255, 255],
-                    ..bold(10.0, Anchor::Middle)
-                },
+                Lettering { colour: [255, 255, 255], ..bold(10.0, Anchor::Middle) },
             );
             self.taken.push([x - half, y - 7.0, x + half, y + 7.0]);
-            self.taken
-                .push([at[0] - 5.0, at[1] - 5.0, at[0] + 5.0, at[1] + 5.0]);
+            self.taken.push([at[0] - 5.0, at[1] - 5.0, at[0] + 5.0, at[1] + 5.0]);
         }
     }
 
     /// Writes the values at their points; every second or third only, where they stand too close.
     fn point_values(&mut self) {
         let grid = &self.subject.area.grid;
-        let texts: Vec<Option<String>> = self
-            .values
-            .iter()
-            .map(|v| v.map(|v| self.text_of(Statistic::Min, v)))
-            .collect();
-        let widest = texts
-            .iter()
-            .flatten()
-            .map(|text| text_width(text, 8.5))
-            .fold(0.0, f64::max);
+        let texts: Vec<Option<String>> =
+            self.values.iter().map(|v| v.map(|v| self.text_of(Statistic::Min, v))).collect();
+        let widest = texts.iter().flatten().map(|text| text_width(text, 8.5)).fold(0.0, f64::max);
         let stride = |spacing_m: f64, needed_px: f64| {
             let spacing_px = spacing_m * self.view.px_per_m;
-            if spacing_px > 0.0 {
-                (needed_px / spacing_px).ceil().clamp(1.0, 1e6) as usize
-            } else {
-                1
-            }
+            if spacing_px > 0.0 { (needed_px / spacing_px).ceil().clamp(1.0, 1e6) as usize } else { 1 }
         };
         let along_u_is_wide =
             self.view.direction(grid.edge_u).x.abs() >= self.view.direction(grid.edge_u).y.abs();
-        let needed = if along_u_is_wide {
-            [widest + 5.0, 12.0]
-        } else {
-            [12.0, widest + 5.0]
-        };
-        let strides = [
-            stride(grid.spacing_m[0], needed[0]),
-            stride(grid.spacing_m[1], needed[1]),
-        ];
+        let needed = if along_u_is_wide { [widest + 5.0, 12.0] } else { [12.0, widest + 5.0] };
+        let strides = [stride(grid.spacing_m[0], needed[0]), stride(grid.spacing_m[1], needed[1])];
         let mut shown = Vec::new();
         for (point, text) in grid.points.iter().zip(texts) {
             let Some(text) = text else { continue };
@@ -303,10 +217,7 @@ impl Drawing<'_> {
                 self.canvas.text(
                     at,
                     &text,
-                    Lettering {
-                        colour: [70, 75, 82],
-                        ..lettering(8.5, Anchor::Middle)
-                    },
+                    Lettering { colour: [70, 75, 82], ..lettering(8.5, Anchor::Middle) },
                 );
             }
         }

@@ -43,10 +43,7 @@ pub fn provenance(outcome: &Outcome, files: &[(String, Vec<u8>)]) -> Result<Vec<
         inputs: &outcome.inputs,
         files: files
             .iter()
-            .map(|(path, bytes)| FileRow {
-                path: path.clone(),
-                sha256: sha256(bytes),
-            })
+            .map(|(path, bytes)| FileRow { path: path.clone(), sha256: sha256(bytes) })
             .collect(),
     })
 }
@@ -56,17 +53,9 @@ pub fn listed_files(provenance: &[u8]) -> Vec<(String, String)> {
     let Ok(file) = serde_json::from_slice::<serde_json::Value>(provenance) else {
         return Vec::new();
     };
-    let rows = file["files"]
-        .as_array()
-        .map(Vec::as_slice)
-        .unwrap_or_default();
+    let rows = file["files"].as_array().map(Vec::as_slice).unwrap_or_default();
     rows.iter()
-        .filter_map(|row| {
-            Some((
-                row["path"].as_str()?.to_owned(),
-                row["sha256"].as_str()?.to_owned(),
-            ))
-        })
+        .filter_map(|row| Some((row["path"].as_str()?.to_owned(), row["sha256"].as_str()?.to_owned())))
         .collect()
 }
 

@@ -14,33 +14,15 @@ pub const NASTY: &str = "Desk <&\"'; a/b\\c, стол №1";
 
 fn interval(value: f64) -> Interval {
     let se = 0.004 * value.abs();
-    Interval {
-        value,
-        se,
-        lo: value - 1.96 * se,
-        hi: value + 1.96 * se,
-    }
+    Interval { value, se, lo: value - 1.96 * se, hi: value + 1.96 * se }
 }
 
 fn point(value: f64) -> PointValue {
     let Interval { value, se, lo, hi } = interval(value);
-    PointValue {
-        value,
-        se,
-        lo,
-        hi,
-        direct: 0.7 * value,
-        indirect: 0.3 * value,
-    }
+    PointValue { value, se, lo, hi, direct: 0.7 * value, indirect: 0.3 * value }
 }
 
-fn grid(
-    origin: DVec3,
-    edge_u: DVec3,
-    edge_v: DVec3,
-    [columns, rows]: [usize; 2],
-    border_m: f64,
-) -> Grid {
+fn grid(origin: DVec3, edge_u: DVec3, edge_v: DVec3, [columns, rows]: [usize; 2], border_m: f64) -> Grid {
     let (u, v) = (edge_u.normalize(), edge_v.normalize());
     let spacing_m = [
         (edge_u.length() - 2.0 * border_m) / columns as f64,
@@ -54,46 +36,14 @@ fn grid(
     };
     let points = (0..rows)
         .flat_map(|row| (0..columns).map(move |column| (row, column)))
-        .map(|(row, column)| GridPoint {
-            row,
-            column,
-            position: place(row, column),
-            normal,
-            excluded: None,
-        })
+        .map(|(row, column)| GridPoint { row, column, position: place(row, column), normal, excluded: None })
         .collect();
-    let outline = vec![
-        origin,
-        origin + edge_u,
-        origin + edge_u + edge_v,
-        origin + edge_v,
-    ];
-    Grid {
-        origin,
-        edge_u,
-        edge_v,
-        normal,
-        columns,
-        rows,
-        spacing_m,
-        border_m,
-        points,
-        outline,
-    }
+    let outline = vec![origin, origin + edge_u, origin + edge_u + edge_v, origin + edge_v];
+    Grid { origin, edge_u, edge_v, normal, columns, rows, spacing_m, border_m, points, outline }
 }
 
-fn field(
-    grid: &Grid,
-    light_scene: &str,
-    quantity: Quantity,
-    value: impl Fn(DVec3) -> f64,
-) -> PointField {
-    let at = |place: &GridPoint| {
-        place
-            .excluded
-            .is_none()
-            .then(|| point(value(place.position)))
-    };
+fn field(grid: &Grid, light_scene: &str, quantity: Quantity, value: impl Fn(DVec3) -> f64) -> PointField {
+    let at = |place: &GridPoint| place.excluded.is_none().then(|| point(value(place.position)));
     PointField {
         light_scene: light_scene.into(),
         quantity,
@@ -105,38 +55,16 @@ fn field(
 
 /// A smooth illuminance under two rows of luminaires.
 fn lit(at: DVec3) -> f64 {
-    let lamps = [
-        (2.0, 1.25),
-        (4.0, 1.25),
-        (6.0, 1.25),
-        (2.0, 3.75),
-        (4.0, 3.75),
-        (6.0, 3.75),
-    ];
-    let one = |(x, y): (f64, f64)| {
-        430.0 / (1.0 + 0.45 * ((at.x - x).powi(2) + (at.y - y).powi(2))).powf(1.5)
-    };
+    let lamps = [(2.0, 1.25), (4.0, 1.25), (6.0, 1.25), (2.0, 3.75), (4.0, 3.75), (6.0, 3.75)];
+    let one = |(x, y): (f64, f64)| 430.0 / (1.0 + 0.45 * ((at.x - x).powi(2) + (at.y - y).powi(2))).powf(1.5);
     110.0 + lamps.into_iter().map(one).sum::<f64>()
 }
 
 fn l_shaped() -> AreaOutcome {
-    let mut grid = grid(
-        DVec3::new(0.0, 0.0, 0.8),
-        DVec3::X * 8.0,
-        DVec3::Y * 5.0,
-        [16, 10],
-        0.0,
-    );
-    grid.outline = [
-        (0.0, 0.0),
-        (8.0, 0.0),
-        (8.0, 3.0),
-        (5.0, 3.0),
-        (5.0, 5.0),
-        (0.0, 5.0),
-    ]
-    .map(|(x, y)| DVec3::new(x, y, 0.8))
-    .to_vec();
+    let mut grid = grid(DVec3::new(0.0, 0.0, 0.8), DVec3::X * 8.0, DVec3::Y * 5.0, [16, 10], 0.0);
+    grid.outline = [(0.0, 0.0), (8.0, 0.0), (8.0, 3.0), (5.0, 3.0), (5.0, 5.0), (0.0, 5.0)]
+        .map(|(x, y)| DVec3::new(x, y, 0.8))
+        .to_vec();
     for point in &mut grid.points {
         let at = point.position;
         point.excluded = if at.x > 5.0 && at.y > 3.0 {
@@ -149,44 +77,21 @@ fn l_shaped() -> AreaOutcome {
     }
     let fields = vec![
         field(&grid, "full", Quantity::Horizontal, lit),
-        field(
-            &grid,
-            "половина / half",
-            Quantity::Horizontal,
-            |at| 0.45 * lit(at) * (0.2 + at.x / 8.0),
-        ),
+        field(&grid, "половина / half", Quantity::Horizontal, |at| {
+            0.45 * lit(at) * (0.2 + at.x / 8.0)
+        }),
         field(&grid, "full", Quantity::Cylindrical, |at| 0.35 * lit(at)),
     ];
-    AreaOutcome {
-        name: NASTY.into(),
-        kind: AreaKind::Task,
-        of: None,
-        row: Some("34.2".into()),
-        grid,
-        fields,
-    }
+    AreaOutcome { name: NASTY.into(), kind: AreaKind::Task, of: None, row: Some("34.2".into()), grid, fields }
 }
 
 fn wall() -> AreaOutcome {
     // u × v points south, into the room.
-    let grid = grid(
-        DVec3::new(0.0, 5.0, 0.0),
-        DVec3::X * 8.0,
-        DVec3::Z * 2.8,
-        [12, 5],
-        0.0,
-    );
+    let grid = grid(DVec3::new(0.0, 5.0, 0.0), DVec3::X * 8.0, DVec3::Z * 2.8, [12, 5], 0.0);
     let fields = vec![field(&grid, "full", Quantity::Normal, |at| {
         30.0 + 95.0 * (at.z / 2.8) * (1.0 + 0.4 * (at.x * 1.6).sin())
     })];
-    AreaOutcome {
-        name: "Wall_N".into(),
-        kind: AreaKind::Surface,
-        of: None,
-        row: None,
-        grid,
-        fields,
-    }
+    AreaOutcome { name: "Wall_N".into(), kind: AreaKind::Surface, of: None, row: None, grid, fields }
 }
 
 fn listed() -> AreaOutcome {
@@ -214,16 +119,9 @@ fn listed() -> AreaOutcome {
         points,
         outline: Vec::new(),
     };
-    let fields = vec![field(&grid, "full", Quantity::Horizontal, |at| {
-        2.0 * at.x - 34.0
-    })];
+    let fields = vec![field(&grid, "full", Quantity::Horizontal, |at| 2.0 * at.x - 34.0)];
     AreaOutcome {
-        name: "Ось прохода".into(),
-        kind: AreaKind::Task,
-        of: None,
-        row: None,
-        grid,
-        fields,
+        name: "Ось прохода".into(), kind: AreaKind::Task, of: None, row: None, grid, fields
     }
 }
 
@@ -231,22 +129,13 @@ fn luminaires() -> Vec<LuminaireOutcome> {
     let mut luminaires = Vec::new();
     for row in 0..2_u32 {
         for column in 0..3_u32 {
-            let position = DVec3::new(
-                2.0 + 2.0 * f64::from(column),
-                1.25 + 2.5 * f64::from(row),
-                2.8,
-            );
+            let position = DVec3::new(2.0 + 2.0 * f64::from(column), 1.25 + 2.5 * f64::from(row), 2.8);
             let corner = |x: f64, y: f64| position + DVec3::new(x, y, 0.0);
             luminaires.push(LuminaireOutcome {
                 kind: if row == 0 { "A".into() } else { "B&".into() },
                 group: format!("row-{}", row + 1),
                 position,
-                outline: vec![
-                    corner(-0.6, -0.15),
-                    corner(0.6, -0.15),
-                    corner(0.6, 0.15),
-                    corner(-0.6, 0.15),
-                ],
+                outline: vec![corner(-0.6, -0.15), corner(0.6, -0.15), corner(0.6, 0.15), corner(-0.6, 0.15)],
                 c0: -DVec3::Y,
                 aim: -DVec3::Z,
             });
@@ -271,14 +160,9 @@ fn viewpoint(name: &str, ugr: Result<Interval, Undefined>) -> ViewpointOutcome {
         direction: DVec3::X,
         azimuth_deg: 0.0,
         tilt_deg: -5.0,
-        sources: if ugr.is_ok() {
-            (0..7).map(source).collect()
-        } else {
-            Vec::new()
-        },
+        sources: if ugr.is_ok() { (0..7).map(source).collect() } else { Vec::new() },
         ugr,
-        convention: "one source per luminaire, ω-weighted mean luminance, CIE 117 position table"
-            .into(),
+        convention: "one source per luminaire, ω-weighted mean luminance, CIE 117 position table".into(),
         background_cd_m2: 38.123456789,
         e_v_lx: 311.5,
         notes: vec!["ω of 2 sources lies outside 0.0003…0.1 sr".into()],
@@ -297,12 +181,7 @@ fn balance(light_scene: &str, emitted_lm: f64) -> FluxBalance {
         emitted_lm,
         absorbed: interval(0.9987 * emitted_lm),
         escaped: interval(0.0011 * emitted_lm),
-        residual_share: Interval {
-            value: 0.0002,
-            se: 0.0004,
-            lo: -0.0006,
-            hi: 0.001,
-        },
+        residual_share: Interval { value: 0.0002, se: 0.0004, lo: -0.0006, hi: 0.001 },
         utilisation: Some(interval(0.71)),
         surfaces: vec![
             surface("Floor", 40.0, 0.78, 0.2),
@@ -325,12 +204,7 @@ fn office() -> RoomOutcome {
         maintenance: [0.95, 1.0, 0.9, 0.94],
     };
     let rectangle = |x: f64, y: f64, w: f64, h: f64| {
-        vec![
-            DVec2::new(x, y),
-            DVec2::new(x + w, y),
-            DVec2::new(x + w, y + h),
-            DVec2::new(x, y + h),
-        ]
+        vec![DVec2::new(x, y), DVec2::new(x + w, y), DVec2::new(x + w, y + h), DVec2::new(x, y + h)]
     };
     RoomOutcome {
         name: "Office <R&D> \"Кабинет\"".into(),
@@ -342,19 +216,8 @@ fn office() -> RoomOutcome {
         reflectances: [0.7, 0.5, 0.2],
         areas: vec![l_shaped(), wall()],
         viewpoints: vec![
-            viewpoint(
-                "Observer 1",
-                Ok(Interval {
-                    value: 18.43,
-                    se: 0.05,
-                    lo: 18.33,
-                    hi: 18.53,
-                }),
-            ),
-            viewpoint(
-                "Наблюдатель 2",
-                Err(Undefined::because("no source is visible")),
-            ),
+            viewpoint("Observer 1", Ok(Interval { value: 18.43, se: 0.05, lo: 18.33, hi: 18.53 })),
+            viewpoint("Наблюдатель 2", Err(Undefined::because("no source is visible"))),
         ],
         luminaires: luminaires(),
         types: vec![
@@ -366,10 +229,7 @@ fn office() -> RoomOutcome {
             rectangle(3.0, 1.8, 1.6, 0.8),
             rectangle(4.6, 1.8, 1.6, 0.8),
         ],
-        flux: vec![
-            balance("full", 25_291.8),
-            balance("половина / half", 12_645.9),
-        ],
+        flux: vec![balance("full", 25_291.8), balance("половина / half", 12_645.9)],
         ugr_table: vec![
             UgrTableOutcome {
                 kind: "A".into(),
@@ -381,12 +241,8 @@ fn office() -> RoomOutcome {
             UgrTableOutcome {
                 kind: "B&".into(),
                 shr: 0.25,
-                crosswise: Err(Undefined::because(
-                    "table not applicable: asymmetric luminaire",
-                )),
-                endwise: Err(Undefined::because(
-                    "table not applicable: asymmetric luminaire",
-                )),
+                crosswise: Err(Undefined::because("table not applicable: asymmetric luminaire")),
+                endwise: Err(Undefined::because("table not applicable: asymmetric luminaire")),
                 notes: Vec::new(),
             },
         ],
@@ -397,9 +253,7 @@ fn corridor() -> RoomOutcome {
     RoomOutcome {
         name: "Коридор / Corridor".into(),
         number: String::new(),
-        footprint: [(20.0, 0.0), (30.0, 0.0), (30.0, 1.8), (20.0, 1.8)]
-            .map(DVec2::from)
-            .to_vec(),
+        footprint: [(20.0, 0.0), (30.0, 0.0), (30.0, 1.8), (20.0, 1.8)].map(DVec2::from).to_vec(),
         floor_m: 0.0,
         height_m: 3.0,
         row: Some("9.1".into()),
@@ -452,25 +306,11 @@ fn requirement(
 /// UGR by table, and of an observer who sees no source.
 fn glare_requirements() -> [Requirement; 2] {
     use Bound::Max;
-    let mut undefined = requirement(
-        Quantity::Ugr,
-        Statistic::Value,
-        Max(19.0),
-        0.0,
-        Verdict::Undefined,
-    );
+    let mut undefined = requirement(Quantity::Ugr, Statistic::Value, Max(19.0), 0.0, Verdict::Undefined);
     undefined.value = Err(Undefined::because("no source is visible"));
     (undefined.lo_joint, undefined.hi_joint, undefined.margin) = (f64::NAN, f64::NAN, None);
-    let mut table = on(
-        requirement(
-            Quantity::Ugr,
-            Statistic::Value,
-            Max(19.0),
-            18.2,
-            Verdict::Pass,
-        ),
-        &office().name,
-    );
+    let mut table =
+        on(requirement(Quantity::Ugr, Statistic::Value, Max(19.0), 18.2, Verdict::Pass), &office().name);
     (table.lo_joint, table.hi_joint) = (f64::NAN, f64::NAN);
     table.note = "table method, SHR 0.25".into();
     table.at_risk = vec!["the luminaires' sides are not in the file: up to 0.4 UGR".into()];
@@ -485,84 +325,28 @@ fn on(mut requirement: Requirement, subject: &str) -> Requirement {
 fn requirements() -> Vec<Requirement> {
     use Bound::Min;
     let [table, undefined] = glare_requirements();
-    let mut limit = requirement(
-        Quantity::Cylindrical,
-        Statistic::Mean,
-        Min(150.0),
-        149.8,
-        Verdict::Fail,
-    );
+    let mut limit = requirement(Quantity::Cylindrical, Statistic::Mean, Min(150.0), 149.8, Verdict::Fail);
     limit.at_the_limit = true;
     limit.verified = "unverified".into();
     limit.other_comparison = Some(Verdict::Pass);
-    let mut colour = on(
-        requirement(
-            Quantity::ColourRendering,
-            Statistic::Value,
-            Min(80.0),
-            82.0,
-            Verdict::Declared,
-        ),
-        "A",
-    );
+    let mut colour =
+        on(requirement(Quantity::ColourRendering, Statistic::Value, Min(80.0), 82.0, Verdict::Declared), "A");
     colour.margin = None;
-    let mut missing = requirement(
-        Quantity::Modelling,
-        Statistic::Mean,
-        Min(0.3),
-        0.0,
-        Verdict::NotAssessed,
-    );
+    let mut missing = requirement(Quantity::Modelling, Statistic::Mean, Min(0.3), 0.0, Verdict::NotAssessed);
     missing.value = Err(Undefined::because("the norm's row has no limit"));
     missing.margin = None;
-    let mut own = requirement(
-        Quantity::Horizontal,
-        Statistic::Min,
-        Min(80.0),
-        91.2,
-        Verdict::Pass,
-    );
-    (own.standard, own.clause, own.light_scene) =
-        ("project".into(), String::new(), "половина / half".into());
+    let mut own = requirement(Quantity::Horizontal, Statistic::Min, Min(80.0), 91.2, Verdict::Pass);
+    (own.standard, own.clause, own.light_scene) = ("project".into(), String::new(), "половина / half".into());
     own.verified = "project".into();
-    let mut passage = on(
-        requirement(
-            Quantity::Horizontal,
-            Statistic::Mean,
-            Min(18.0),
-            13.4,
-            Verdict::Fail,
-        ),
-        "Ось прохода",
-    );
+    let mut passage =
+        on(requirement(Quantity::Horizontal, Statistic::Mean, Min(18.0), 13.4, Verdict::Fail), "Ось прохода");
     passage.room = corridor().name;
     passage.clause = "9.1".into();
     vec![
-        requirement(
-            Quantity::Horizontal,
-            Statistic::Mean,
-            Min(500.0),
-            599.4,
-            Verdict::Pass,
-        ),
-        requirement(
-            Quantity::Horizontal,
-            Statistic::U0,
-            Min(0.6),
-            0.6049,
-            Verdict::Undecided,
-        ),
+        requirement(Quantity::Horizontal, Statistic::Mean, Min(500.0), 599.4, Verdict::Pass),
+        requirement(Quantity::Horizontal, Statistic::U0, Min(0.6), 0.6049, Verdict::Undecided),
         limit,
-        on(
-            requirement(
-                Quantity::Normal,
-                Statistic::Mean,
-                Min(75.0),
-                82.7,
-                Verdict::Pass,
-            ),
-            "Wall_N",
-        ),
+        on(requirement(Quantity::Normal, Statistic::Mean, Min(75.0), 82.7, Verdict::Pass), "Wall_N"),
         table,
         undefined,
         colour,
@@ -586,11 +370,7 @@ fn values() -> Vec<Value> {
     };
     vec![
         value("mean", Ok(interval(599.400_000_000_001)), None),
-        value(
-            "min",
-            Ok(interval(1.0 / 3.0 + 259.5)),
-            Some(DVec3::new(0.25, 4.75, 0.8)),
-        ),
+        value("min", Ok(interval(1.0 / 3.0 + 259.5)), Some(DVec3::new(0.25, 4.75, 0.8))),
         value("Ud", Err(Undefined::because("E_max is 0")), None),
     ]
 }
@@ -633,10 +413,7 @@ pub fn outcome() -> Outcome {
             what: "paths are cut after 24 reflections".into(),
             effect: "below 0.01 % of every value".into(),
         }],
-        inputs: vec![InputFile {
-            path: "photometry/A & B.ldt".into(),
-            sha256: "ab".repeat(32),
-        }],
+        inputs: vec![InputFile { path: "photometry/A & B.ldt".into(), sha256: "ab".repeat(32) }],
     }
 }
 

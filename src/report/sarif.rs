@@ -10,10 +10,7 @@ pub fn sarif(outcome: &Outcome) -> String {
     let results: Vec<_> = outcome.requirements.iter().filter_map(result).collect();
     let rules = json!([
         rule("fail", "A requirement is certainly not met."),
-        rule(
-            "undecided",
-            "The limit lies within the numerical uncertainty."
-        ),
+        rule("undecided", "The limit lies within the numerical uncertainty."),
         rule("undefined", "The value that is limited does not exist."),
     ]);
     let log = json!({
@@ -63,14 +60,7 @@ mod tests {
         let log: serde_json::Value = serde_json::from_str(&sarif(&outcome)).expect("JSON");
         let results = log["runs"][0]["results"].as_array().expect("results");
         let open = |v| matches!(v, Verdict::Fail | Verdict::Undecided | Verdict::Undefined);
-        assert_eq!(
-            results.len(),
-            outcome
-                .requirements
-                .iter()
-                .filter(|r| open(r.verdict))
-                .count()
-        );
+        assert_eq!(results.len(), outcome.requirements.iter().filter(|r| open(r.verdict)).count());
         assert!(results.iter().all(|r| r["message"]["text"].is_string()));
     }
 }

@@ -40,10 +40,7 @@ impl Naming {
         let first = outcome.requirements.first().map(|r| r.light_scene.as_str());
         Self {
             room: outcome.rooms.len() > 1,
-            light_scene: outcome
-                .requirements
-                .iter()
-                .any(|r| Some(r.light_scene.as_str()) != first),
+            light_scene: outcome.requirements.iter().any(|r| Some(r.light_scene.as_str()) != first),
         }
     }
 }
@@ -68,11 +65,7 @@ pub fn sentence(lang: Lang, requirement: &Requirement, naming: Naming) -> Senten
     let unit = number::unit(lang, quantity, statistic);
     let limit_text = if limit.is_finite() {
         let limit_text = number::limit(lang, quantity, statistic, limit);
-        let term = if is_minimum {
-            Term::AtLeast
-        } else {
-            Term::AtMost
-        };
+        let term = if is_minimum { Term::AtLeast } else { Term::AtMost };
         phrase(lang, term, &[&format!("{limit_text}{unit}")])
     } else {
         "—".into()
@@ -240,18 +233,10 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
         None => word(lang, Term::NothingRequired).to_owned(),
     };
     if tally.declared > 0 {
-        counts.push(phrase(
-            lang,
-            Term::DeclaredCount,
-            &[&tally.declared.to_string()],
-        ));
+        counts.push(phrase(lang, Term::DeclaredCount, &[&tally.declared.to_string()]));
     }
     if tally.not_assessed > 0 {
-        counts.push(phrase(
-            lang,
-            Term::NotAssessedCount,
-            &[&tally.not_assessed.to_string()],
-        ));
+        counts.push(phrase(lang, Term::NotAssessedCount, &[&tally.not_assessed.to_string()]));
     }
     (head, (!counts.is_empty()).then(|| counts.join("; ")))
 }
@@ -270,10 +255,7 @@ pub fn verdict_key(verdict: Verdict) -> &'static str {
 
 /// One English line about a requirement, for logs that machines show to people.
 pub fn line(requirement: &Requirement) -> String {
-    let naming = Naming {
-        room: true,
-        light_scene: true,
-    };
+    let naming = Naming { room: true, light_scene: true };
     let text = sentence(Lang::En, requirement, naming);
     let because = match &requirement.value {
         Ok(_) => String::new(),

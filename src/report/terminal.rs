@@ -38,13 +38,7 @@ pub fn table(outcome: &Outcome, style: Style) -> String {
     let listed: Vec<&Requirement> = outcome
         .requirements
         .iter()
-        .filter(|r| {
-            !brief
-                || matches!(
-                    r.verdict,
-                    Verdict::Fail | Verdict::Undecided | Verdict::Undefined
-                )
-        })
+        .filter(|r| !brief || matches!(r.verdict, Verdict::Fail | Verdict::Undecided | Verdict::Undefined))
         .collect();
     if !listed.is_empty() {
         if brief {
@@ -73,15 +67,8 @@ fn requirements(listed: &[&Requirement], naming: Naming, style: Style) -> String
     .map(|term| word(lang, term).to_owned());
     let mut rows = vec![(head, None)];
     for requirement in listed {
-        let Sentence {
-            symbol,
-            place,
-            required,
-            value,
-            interval,
-            verdict,
-            ..
-        } = sentence(lang, requirement, naming);
+        let Sentence { symbol, place, required, value, interval, verdict, .. } =
+            sentence(lang, requirement, naming);
         let mark = if is_unverified(requirement) { "°" } else { "" };
         let mut verdict = verdict.to_owned();
         if requirement.at_the_limit {
@@ -92,22 +79,11 @@ fn requirements(listed: &[&Requirement], naming: Naming, style: Style) -> String
         {
             verdict = format!("{verdict}: {undefined}");
         }
-        let cells = [
-            symbol.text(),
-            place,
-            format!("{required}{mark}"),
-            value,
-            interval,
-            verdict,
-        ]
-        .map(|cell| one_line(&cell));
+        let cells = [symbol.text(), place, format!("{required}{mark}"), value, interval, verdict]
+            .map(|cell| one_line(&cell));
         rows.push((cells, Some(requirement.verdict)));
     }
-    aligned(
-        &rows,
-        [false, false, false, true, true, false],
-        style.colour,
-    )
+    aligned(&rows, [false, false, false, true, true, false], style.colour)
 }
 
 fn rooms(outcome: &Outcome, style: Style) -> String {
@@ -120,21 +96,12 @@ fn rooms(outcome: &Outcome, style: Style) -> String {
     let mut rows = vec![(head, None)];
     for room in &outcome.rooms {
         let tally = Tally::of(outcome.requirements.iter().filter(|r| r.room == room.name));
-        let name = if room.number.is_empty() {
-            room.name.clone()
-        } else {
-            format!("{} {}", room.number, room.name)
-        };
+        let name =
+            if room.number.is_empty() { room.name.clone() } else { format!("{} {}", room.number, room.name) };
         let verdict = tally.verdict();
-        let said = verdict.map_or(word(lang, Term::NothingRequired), |v| {
-            words::verdict(lang, v)
-        });
+        let said = verdict.map_or(word(lang, Term::NothingRequired), |v| words::verdict(lang, v));
         rows.push((
-            [
-                one_line(&name),
-                format!("{}/{}", tally.pass, tally.judged()),
-                said.to_owned(),
-            ],
+            [one_line(&name), format!("{}/{}", tally.pass, tally.judged()), said.to_owned()],
             verdict,
         ));
     }
@@ -179,18 +146,9 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
         }
     };
     let any = |test: &dyn Fn(&Requirement) -> bool| listed.iter().any(|r| test(r));
-    note(
-        any(&is_unverified),
-        format!("° {}", word(lang, Term::UnverifiedMeans)),
-    );
-    note(
-        any(&|r| r.at_the_limit),
-        word(lang, Term::AtTheLimitMeans).to_owned(),
-    );
-    note(
-        any(&|r| r.verdict == Verdict::Undecided),
-        word(lang, Term::UndecidedMeans).to_owned(),
-    );
+    note(any(&is_unverified), format!("° {}", word(lang, Term::UnverifiedMeans)));
+    note(any(&|r| r.at_the_limit), word(lang, Term::AtTheLimitMeans).to_owned());
+    note(any(&|r| r.verdict == Verdict::Undecided), word(lang, Term::UndecidedMeans).to_owned());
     for requirement in listed {
         if let Some(other) = requirement.other_comparison {
             let subject = format!(
@@ -202,18 +160,13 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
             note(true, format!("{subject}: {said}"));
         }
     }
-    note(
-        any(&|r| r.value.is_ok()),
-        word(lang, Term::ErrorNotice).to_owned(),
-    );
+    note(any(&|r| r.value.is_ok()), word(lang, Term::ErrorNotice).to_owned());
     text
 }
 
 /// Control characters of a name must not reach the terminal.
 fn one_line(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 fn paint(text: &str, verdict: Option<Verdict>, colour: Colour) -> String {
@@ -234,10 +187,7 @@ mod tests {
     use super::*;
     use crate::report::sample;
 
-    const PLAIN: Style = Style {
-        lang: Lang::En,
-        colour: Colour::Plain,
-    };
+    const PLAIN: Style = Style { lang: Lang::En, colour: Colour::Plain };
 
     #[test]
     fn the_verdict_column_starts_at_the_same_character_in_every_row() {
@@ -249,10 +199,7 @@ mod tests {
             let outcome = sample::outcome();
             for (line, requirement) in text.lines().skip(1).zip(&outcome.requirements) {
                 let tail: String = line.chars().skip(at).collect();
-                assert!(
-                    tail.starts_with(words::verdict(lang, requirement.verdict)),
-                    "{line}"
-                );
+                assert!(tail.starts_with(words::verdict(lang, requirement.verdict)), "{line}");
             }
         }
     }
@@ -261,27 +208,11 @@ mod tests {
     fn marks_are_explained_and_the_last_line_is_the_verdict() {
         let text = table(&sample::outcome(), PLAIN);
         assert!(text.contains("°") && text.contains("not verified"));
-        assert!(
-            text.contains("at the limit")
-                && text.contains("declared")
-                && text.contains("not assessed")
-        );
+        assert!(text.contains("at the limit") && text.contains("declared") && text.contains("not assessed"));
         let last = text.lines().last().expect("a line");
-        assert!(
-            last.starts_with("does not comply with EN 12464-1:2021: 2 of"),
-            "{last}"
-        );
+        assert!(last.starts_with("does not comply with EN 12464-1:2021: 2 of"), "{last}");
         assert!(!text.contains('\u{1b}'));
-        assert!(
-            table(
-                &sample::outcome(),
-                Style {
-                    colour: Colour::Ansi,
-                    ..PLAIN
-                }
-            )
-            .contains("\u{1b}[1;31m")
-        );
+        assert!(table(&sample::outcome(), Style { colour: Colour::Ansi, ..PLAIN }).contains("\u{1b}[1;31m"));
     }
 
     #[test]

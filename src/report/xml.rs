@@ -43,9 +43,6 @@ mod tests {
         let nasty = "a<b & \"c\" 'd' \u{1}\u{ffff}]]> Кабинет";
         let document = format!("<t a=\"{0}\" b='{0}'>{0}</t>", escape(nasty));
         let parsed = roxmltree::Document::parse(&document).expect("well-formed");
-        assert_eq!(
-            parsed.root_element().text(),
-            Some(printable(nasty).as_str())
-        );
+        assert_eq!(parsed.root_element().text(), Some(printable(nasty).as_str()));
     }
 }

@@ -48,7 +48,13 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
     for (index, ray) in demand.rays.iter().enumerate() {
         let row = first_ray + index;
         let mut rng = Rng::new(prepared.seed, stream, (demand.receivers.len() + index) as u64);
-        answer_ray(prepared, ray, &mut rng, &mut desk, &mut values[row * channels * PARTS..(row + 1) * channels * PARTS]);
+        answer_ray(
+            prepared,
+            ray,
+            &mut rng,
+            &mut desk,
+            &mut values[row * channels * PARTS..(row + 1) * channels * PARTS],
+        );
     }
     Sheet { values, flux: None, counts: desk.counts }
 }
@@ -74,7 +80,8 @@ fn answer_receiver(
     for sample in 0..gather {
         let turn = sample as usize % kernels.len();
         let direction = kernels[turn].sample(sequence.point(sample, rng));
-        let density: f64 = kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64;
+        let density: f64 =
+            kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64;
         if !(density > 0.0) {
             continue;
         }
@@ -123,7 +130,8 @@ fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut 
             }
             let part = if own { Part::Direct } else { Part::Image };
             for (k, kernel) in receiver.kernels.iter().enumerate() {
-                let value = lost * arrival.normal_lx * kernel.response(arrival.direction) / f64::from(samples);
+                let value =
+                    lost * arrival.normal_lx * kernel.response(arrival.direction) / f64::from(samples);
                 out[(k * channels + source.channel) * PARTS + part as usize] += value;
             }
         }
@@ -160,7 +168,8 @@ fn straight_openings(prepared: &Prepared, ray: &Ray, out: &mut [f64]) {
         if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, ray.point, ray.direction) {
             let lift = prepared.scene.tracer.offset_m();
             let blind = &prepared.scene.luminaires[luminaire].body;
-            let passed = prepared.scene.tracer.transmittance(ray.point, ray.direction, distance_m - lift, blind);
+            let passed =
+                prepared.scene.tracer.transmittance(ray.point, ray.direction, distance_m - lift, blind);
             out[prepared.scene.channel_of[luminaire] * PARTS + Part::Direct as usize] += luminance * passed;
         }
     }

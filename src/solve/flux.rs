@@ -173,7 +173,8 @@ fn follow(
             blind = &[];
         }
         let lift = scene.tracer.offset_m();
-        origin = origin + direction * hit.distance_m + normal * if next.direction.z > 0.0 { lift } else { -lift };
+        origin =
+            origin + direction * hit.distance_m + normal * if next.direction.z > 0.0 { lift } else { -lift };
         direction = frame * next.direction;
     }
     counts.cut += 1;

@@ -65,7 +65,13 @@ pub(super) fn follow(
         let normal = if hit.front { front } else { -front };
         let cos = -direction.dot(normal);
         let Some((reflected, passed)) = scene.bsdf(hit.triangle).specular(cos) else {
-            return Some(Landing { point, normal, triangle: hit.triangle, barycentric: hit.barycentric, front: hit.front });
+            return Some(Landing {
+                point,
+                normal,
+                triangle: hit.triangle,
+                barycentric: hit.barycentric,
+                front: hit.front,
+            });
         };
         let choice = rng.uniform();
         let lift = scene.tracer.offset_m();

@@ -147,7 +147,13 @@ impl std::fmt::Debug for Prepared<'_> {
 }
 
 /// Prepares a scene for a demand; draws from stream 0 of `seed`.
-pub fn prepare<'s>(scene: &'s Scene, demand: &'s Demand, method: Method, effort: Effort, seed: u64) -> Prepared<'s> {
+pub fn prepare<'s>(
+    scene: &'s Scene,
+    demand: &'s Demand,
+    method: Method,
+    effort: Effort,
+    seed: u64,
+) -> Prepared<'s> {
     let emitters = Emitters::new(scene);
     let field = match method {
         Method::Links => Some(prepare::field(&emitters, &effort, seed)),
@@ -157,7 +163,17 @@ pub fn prepare<'s>(scene: &'s Scene, demand: &'s Demand, method: Method, effort:
         Method::Links => unshadowed_rows(&emitters, demand),
         Method::Path => Vec::new(),
     };
-    Prepared { scene, emitters, demand, effort, method, seed, field, unshadowed, first_rows: demand.first_rows() }
+    Prepared {
+        scene,
+        emitters,
+        demand,
+        effort,
+        method,
+        seed,
+        field,
+        unshadowed,
+        first_rows: demand.first_rows(),
+    }
 }
 
 /// Block `block` (0-based) of the answers: draws from stream `block + 1` of the seed.

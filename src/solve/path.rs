@@ -56,7 +56,11 @@ fn lamp_light(scene: &Scene, at: DVec3, kernel: &Kernel, weight: f64, rng: &mut 
 }
 
 /// Normal illuminance from a random luminaire (times their number), its direction and channel.
-fn one_lamp(scene: &Scene, rng: &mut Rng, origin_towards: impl Fn(DVec3) -> DVec3) -> Option<(f64, DVec3, usize)> {
+fn one_lamp(
+    scene: &Scene,
+    rng: &mut Rng,
+    origin_towards: impl Fn(DVec3) -> DVec3,
+) -> Option<(f64, DVec3, usize)> {
     let count = scene.luminaires.len();
     if count == 0 {
         return None;
@@ -141,7 +145,15 @@ fn trace(
     counts.cut += 1;
 }
 
-fn add_lamps(scene: &Scene, origin: DVec3, direction: DVec3, reach: f64, weight: f64, part: Part, out: &mut [f64]) {
+fn add_lamps(
+    scene: &Scene,
+    origin: DVec3,
+    direction: DVec3,
+    reach: f64,
+    weight: f64,
+    part: Part,
+    out: &mut [f64],
+) {
     for (index, lamp) in scene.luminaires.iter().enumerate() {
         let area_m2 = lamp.kind.opening.area_m2();
         let into = lamp.world_from_luminaire.transpose();
@@ -149,7 +161,8 @@ fn add_lamps(scene: &Scene, origin: DVec3, direction: DVec3, reach: f64, weight:
         let t = -o.z / d.z;
         if area_m2 > 0.0 && t > 0.0 && t < reach && lamp.kind.opening.contains(o + d * t) {
             let intensity_cd = lamp.kind.distribution.intensity_along(-d) * lamp.dim;
-            out[scene.channel_of[index] * PARTS + part as usize] += weight * intensity_cd / (area_m2 * d.z.abs());
+            out[scene.channel_of[index] * PARTS + part as usize] +=
+                weight * intensity_cd / (area_m2 * d.z.abs());
         }
     }
 }

@@ -33,8 +33,10 @@ struct Collected {
 pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> LuminanceField {
     let scene = emitters.scene;
     let diffuse = |triangle: usize| scene.bsdf(triangle as u32).specular(1.0).is_none();
-    let area_m2: f64 =
-        (0..scene.mesh.triangles.len()).filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
+    let area_m2: f64 = (0..scene.mesh.triangles.len())
+        .filter(|&t| diffuse(t))
+        .map(|t| scene.mesh.normal_and_area(t).1)
+        .sum();
     let patch_m2 = effort.patch_m2.unwrap_or(area_m2 / PATCHES).max(1e-12);
     let patches = Patches::new(&scene.mesh, patch_m2, diffuse);
     let channels = scene.channels.len();

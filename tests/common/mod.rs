@@ -84,7 +84,14 @@ pub fn planar(point: DVec3, normal: DVec3) -> Receiver {
     Receiver { point, lift: normal, kernels: vec![Kernel::Planar { normal }] }
 }
 
-pub fn sheets(scene: &Scene, demand: &Demand, method: Method, effort: Effort, seed: u64, blocks: u64) -> Vec<Sheet> {
+pub fn sheets(
+    scene: &Scene,
+    demand: &Demand,
+    method: Method,
+    effort: Effort,
+    seed: u64,
+    blocks: u64,
+) -> Vec<Sheet> {
     let prepared = prepare(scene, demand, method, effort, seed);
     (0..blocks).into_par_iter().map(|block| answer(&prepared, block)).collect()
 }
@@ -110,7 +117,9 @@ pub fn furnished() -> Scene {
     let solid = |mesh: &mut Mesh, name: &str, material, lo: [f64; 3], hi: [f64; 3]| {
         let surface = mesh.add_surface(name, material, true);
         let (a, b) = (DVec3::from_array(lo), DVec3::from_array(hi));
-        let p = |x: bool, y: bool, z: bool| DVec3::new(if x { b.x } else { a.x }, if y { b.y } else { a.y }, if z { b.z } else { a.z });
+        let p = |x: bool, y: bool, z: bool| {
+            DVec3::new(if x { b.x } else { a.x }, if y { b.y } else { a.y }, if z { b.z } else { a.z })
+        };
         let (f, t) = (false, true);
         for corners in [
             [p(f, f, f), p(f, t, f), p(t, t, f), p(t, f, f)],

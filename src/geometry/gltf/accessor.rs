@@ -35,20 +35,11 @@ impl<'a> Buffers<'a> {
         read: &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Self {
         let loaded = vec![None; root.buffers.len()];
-        Self {
-            root,
-            bin,
-            read,
-            loaded,
-        }
+        Self { root, bin, read, loaded }
     }
 
     /// Positions in the file's own axes, as written.
-    pub(super) fn positions(
-        &mut self,
-        index: Index<Accessor>,
-        user: &str,
-    ) -> Result<Vec<DVec3>, GltfError> {
+    pub(super) fn positions(&mut self, index: Index<Accessor>, user: &str) -> Result<Vec<DVec3>, GltfError> {
         let (name, accessor) = self.accessor(index, user)?;
         let is_vec3 = matches!(accessor.type_, Checked::Valid(Type::Vec3));
         let is_f32 = component(accessor) == Some(ComponentType::F32);
@@ -80,12 +71,10 @@ impl<'a> Buffers<'a> {
             let layout = self.layout(view, offset, count, 12, None, &name)?;
             let values = self.collect(&layout, count, 12, &vector);
             for (at, value) in at.into_iter().zip(values) {
-                let point = points
-                    .get_mut(at as usize)
-                    .ok_or_else(|| GltfError::Accessor {
-                        name: name.clone(),
-                        what: format!("sparse index {at} is out of range"),
-                    })?;
+                let point = points.get_mut(at as usize).ok_or_else(|| GltfError::Accessor {
+                    name: name.clone(),
+                    what: format!("sparse index {at} is out of range"),
+                })?;
                 *point = value;
             }
         }
@@ -93,11 +82,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// Vertex indices.
-    pub(super) fn indices(
-        &mut self,
-        index: Index<Accessor>,
-        user: &str,
-    ) -> Result<Vec<u32>, GltfError> {
+    pub(super) fn indices(&mut self, index: Index<Accessor>, user: &str) -> Result<Vec<u32>, GltfError> {
         let (name, accessor) = self.accessor(index, user)?;
         let size = match component(accessor) {
             Some(kind @ (ComponentType::U8 | ComponentType::U16 | ComponentType::U32))
@@ -113,27 +98,16 @@ impl<'a> Buffers<'a> {
             }
         };
         if accessor.sparse.is_some() {
-            return Err(GltfError::Accessor {
-                name,
-                what: "sparse indices are not supported".to_owned(),
-            });
+            return Err(GltfError::Accessor { name, what: "sparse indices are not supported".to_owned() });
         }
         self.elements(accessor, &name, size, &unsigned)
     }
 
-    fn accessor(
-        &self,
-        index: Index<Accessor>,
-        user: &str,
-    ) -> Result<(String, &'a Accessor), GltfError> {
-        let accessor =
-            self.root
-                .accessors
-                .get(index.value())
-                .ok_or_else(|| GltfError::Reference {
-                    from: user.to_owned(),
-                    to: format!("accessor {}", index.value()),
-                })?;
+    fn accessor(&self, index: Index<Accessor>, user: &str) -> Result<(String, &'a Accessor), GltfError> {
+        let accessor = self.root.accessors.get(index.value()).ok_or_else(|| GltfError::Reference {
+            from: user.to_owned(),
+            to: format!("accessor {}", index.value()),
+        })?;
         let name = match &accessor.name {
             Some(name) => format!("accessor {} \"{name}\" of {user}", index.value()),
             None => format!("accessor {} of {user}", index.value()),
@@ -179,31 +153,20 @@ impl<'a> Buffers<'a> {
         stride: Option<usize>,
         name: &str,
     ) -> Result<Layout, GltfError> {
-        let fault = |what: String| GltfError::Accessor {
-            name: name.to_owned(),
-            what,
-        };
-        let view = self
-            .root
-            .buffer_views
-            .get(view_index)
-            .ok_or_else(|| GltfError::Reference {
-                from: name.to_owned(),
-                to: format!("buffer view {view_index}"),
-            })?;
+        let fault = |what: String| GltfError::Accessor { name: name.to_owned(), what };
+        let view = self.root.buffer_views.get(view_index).ok_or_else(|| GltfError::Reference {
+            from: name.to_owned(),
+            to: format!("buffer view {view_index}"),
+        })?;
         let stride = stride.unwrap_or(size);
         if stride < size {
-            return Err(fault(format!(
-                "a stride of {stride} bytes for elements of {size}"
-            )));
+            return Err(fault(format!("a stride of {stride} bytes for elements of {size}")));
         }
         let view_length = count_of(view.byte_length.0, name)?;
         let view_start = count_of(view.byte_offset.map_or(0, |offset| offset.0), name)?;
         let needed = count
             .checked_sub(1)
-            .map_or(Some(0), |steps| {
-                steps.checked_mul(stride)?.checked_add(size)
-            })
+            .map_or(Some(0), |steps| steps.checked_mul(stride)?.checked_add(size))
             .and_then(|bytes| bytes.checked_add(offset));
         if needed.is_none_or(|needed| needed > view_length) {
             return Err(fault(format!(
@@ -212,31 +175,16 @@ impl<'a> Buffers<'a> {
         }
         let buffer = view.buffer.value();
         let available = self.load(buffer, name)?.len();
-        if view_start
-            .checked_add(view_length)
-            .is_none_or(|end| end > available)
-        {
+        if view_start.checked_add(view_length).is_none_or(|end| end > available) {
             return Err(fault(format!(
                 "buffer view {view_index} runs past buffer {buffer} of {available} bytes"
             )));
         }
-        Ok(Layout {
-            start: view_start + offset,
-            stride,
-            buffer,
-        })
+        Ok(Layout { start: view_start + offset, stride, buffer })
     }
 
-    fn collect<T>(
-        &self,
-        layout: &Layout,
-        count: usize,
-        size: usize,
-        read: &dyn Fn(&[u8]) -> T,
-    ) -> Vec<T> {
-        let bytes = self.loaded[layout.buffer]
-            .as_deref()
-            .expect("layout() loaded it");
+    fn collect<T>(&self, layout: &Layout, count: usize, size: usize, read: &dyn Fn(&[u8]) -> T) -> Vec<T> {
+        let bytes = self.loaded[layout.buffer].as_deref().expect("layout() loaded it");
         (0..count)
             .map(|i| {
                 let at = layout.start + i * layout.stride;
@@ -250,10 +198,7 @@ impl<'a> Buffers<'a> {
             .root
             .buffers
             .get(index)
-            .ok_or_else(|| GltfError::Reference {
-                from: user.to_owned(),
-                to: format!("buffer {index}"),
-            })?;
+            .ok_or_else(|| GltfError::Reference { from: user.to_owned(), to: format!("buffer {index}") })?;
         if self.loaded[index].is_none() {
             let fault = |what: String| GltfError::Buffer { index, what };
             let bytes = match (&buffer.uri, self.bin) {
@@ -266,10 +211,7 @@ impl<'a> Buffers<'a> {
             };
             let declared = buffer.byte_length.0;
             if declared > bytes.len() as u64 {
-                return Err(fault(format!(
-                    "it declares {declared} bytes and has {}",
-                    bytes.len()
-                )));
+                return Err(fault(format!("it declares {declared} bytes and has {}", bytes.len())));
             }
             self.loaded[index] = Some(bytes);
         }
@@ -301,10 +243,7 @@ fn vector(bytes: &[u8]) -> DVec3 {
 }
 
 fn unsigned(bytes: &[u8]) -> u32 {
-    bytes
-        .iter()
-        .rev()
-        .fold(0, |word, &byte| (word << 8) | u32::from(byte))
+    bytes.iter().rev().fold(0, |word, &byte| (word << 8) | u32::from(byte))
 }
 
 fn count_of(value: u64, name: &str) -> Result<usize, GltfError> {
@@ -315,8 +254,5 @@ fn count_of(value: u64, name: &str) -> Result<usize, GltfError> {
 }
 
 fn bad_type(name: &str) -> GltfError {
-    GltfError::Accessor {
-        name: name.to_owned(),
-        what: "sparse indices of an unknown type".to_owned(),
-    }
+    GltfError::Accessor { name: name.to_owned(), what: "sparse indices of an unknown type".to_owned() }
 }

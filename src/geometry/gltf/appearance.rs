@@ -79,10 +79,7 @@ pub(super) fn take_unused(document: &mut json::Value) -> Vec<&'static str> {
 }
 
 /// All materials of the file with the reflectances written in it.
-pub(super) fn materials(
-    root: &json::Root,
-    written: &Written,
-) -> Result<Vec<ImportedMaterial>, GltfError> {
+pub(super) fn materials(root: &json::Root, written: &Written) -> Result<Vec<ImportedMaterial>, GltfError> {
     root.materials
         .iter()
         .enumerate()
@@ -100,10 +97,7 @@ fn luminance(name: &str, colour: &[f64]) -> Result<f64, GltfError> {
     let within = colour.iter().all(|c| (0.0..=1.0).contains(c));
     match colour {
         [r, g, b, _] if within => Ok(0.2126 * r + 0.7152 * g + 0.0722 * b),
-        _ => Err(GltfError::Colour {
-            name: name.to_owned(),
-            value: colour.to_vec(),
-        }),
+        _ => Err(GltfError::Colour { name: name.to_owned(), value: colour.to_vec() }),
     }
 }
 
@@ -146,31 +140,21 @@ pub(super) fn biases(root: &json::Root, written: &Written, unused: &[&str]) -> V
     listing("transparency ignored (use `glass` or `opal`)", &|m, _| {
         m.alpha_mode != json::validation::Checked::Valid(translucent)
     });
-    let morphs = root
-        .meshes
-        .iter()
-        .flat_map(|mesh| &mesh.primitives)
-        .any(|primitive| primitive.targets.is_some());
-    let lights = root
-        .extensions_used
-        .iter()
-        .any(|name| name == "KHR_lights_punctual" || name == "EXT_lights_ies");
+    let morphs =
+        root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| primitive.targets.is_some());
+    let lights =
+        root.extensions_used.iter().any(|name| name == "KHR_lights_punctual" || name == "EXT_lights_ies");
     if morphs {
         biases.push("morph targets of the glTF file are ignored".to_owned());
     }
     if lights {
-        biases.push(
-            "light sources of the glTF file are ignored; luminaires come from the project"
-                .to_owned(),
-        );
+        biases
+            .push("light sources of the glTF file are ignored; luminaires come from the project".to_owned());
     }
     biases.extend(unused.iter().map(|&bias| bias.to_owned()));
     biases
 }
 
 fn name_of(material: &json::Material, index: usize) -> String {
-    material
-        .name
-        .clone()
-        .unwrap_or_else(|| format!("material_{index}"))
+    material.name.clone().unwrap_or_else(|| format!("material_{index}"))
 }

@@ -15,16 +15,11 @@ pub(super) fn split(document: &[u8]) -> Result<(&[u8], Option<&[u8]>), GltfError
     let broken = |what: &str| GltfError::Container(what.to_owned());
     let version = word(4).ok_or_else(|| broken("the 12-byte header is cut off"))?;
     if version != 2 {
-        return Err(broken(&format!(
-            "version {version} is not supported, only 2"
-        )));
+        return Err(broken(&format!("version {version} is not supported, only 2")));
     }
     let length = word(8).ok_or_else(|| broken("the 12-byte header is cut off"))?;
     if length > document.len() {
-        return Err(broken(&format!(
-            "the header announces {length} bytes, the file has {}",
-            document.len()
-        )));
+        return Err(broken(&format!("the header announces {length} bytes, the file has {}", document.len())));
     }
     let (mut json, mut bin) = (None, None);
     let mut at = 12;
@@ -66,9 +61,7 @@ pub(super) enum Source {
 /// Splits a URI into inline bytes or a relative path.
 pub(super) fn source(uri: &str) -> Result<Source, String> {
     if let Some(rest) = uri.strip_prefix("data:") {
-        let (head, body) = rest
-            .split_once(',')
-            .ok_or("a data: URI without a comma".to_owned())?;
+        let (head, body) = rest.split_once(',').ok_or("a data: URI without a comma".to_owned())?;
         return if head.ends_with(";base64") {
             base64(body.as_bytes()).map(Source::Inline)
         } else {

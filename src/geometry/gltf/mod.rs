@@ -176,10 +176,7 @@ pub fn import(
 
 /// Whether a triangle has no area worth the name: height below 1e-10 of its longest edge.
 pub fn is_degenerate([a, b, c]: [DVec3; 3]) -> bool {
-    let longest2 = (b - a)
-        .length_squared()
-        .max((c - b).length_squared())
-        .max((a - c).length_squared());
+    let longest2 = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let doubled_area = (b - a).cross(c - a).length();
     !(doubled_area > 1e-10 * longest2) || !doubled_area.is_normal()
 }

@@ -48,48 +48,30 @@ impl<'a> Walk<'a> {
             })
         })?;
         if scene.nodes.is_empty() {
-            return Err(GltfError::NoScene(format!(
-                "scene {index} has no root nodes"
-            )));
+            return Err(GltfError::NoScene(format!("scene {index} has no root nodes")));
         }
         if self.root.scene.is_none() && self.root.scenes.len() > 1 {
-            out.biases
-                .push("the file names no default scene; its first one was read".to_owned());
+            out.biases.push("the file names no default scene; its first one was read".to_owned());
         }
         let children = |node: &json::Node| node.children.clone().unwrap_or_default();
         for (index, node) in self.root.nodes.iter().enumerate() {
             if let Some(child) = children(node).iter().find(|c| scene.nodes.contains(c)) {
                 let (parent, child) = (self.name_of(node, index), child.value());
-                let name = self
-                    .root
-                    .nodes
-                    .get(child)
-                    .map(|node| self.name_of(node, child));
-                return Err(GltfError::NotRoot {
-                    node: name.unwrap_or_default(),
-                    parent,
-                });
+                let name = self.root.nodes.get(child).map(|node| self.name_of(node, child));
+                return Err(GltfError::NotRoot { node: name.unwrap_or_default(), parent });
             }
         }
         let z_up = DMat4::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y));
-        let mut stack: Vec<(usize, Option<usize>, DMat4, usize)> = scene
-            .nodes
-            .iter()
-            .rev()
-            .map(|node| (node.value(), None, z_up, 1))
-            .collect();
+        let mut stack: Vec<(usize, Option<usize>, DMat4, usize)> =
+            scene.nodes.iter().rev().map(|node| (node.value(), None, z_up, 1)).collect();
         while let Some((index, parent, world_from_parent, depth)) = stack.pop() {
-            let user = parent.map_or("the scene".to_owned(), |p: usize| {
-                format!("node \"{}\"", out.nodes[p].name)
-            });
+            let user =
+                parent.map_or("the scene".to_owned(), |p: usize| format!("node \"{}\"", out.nodes[p].name));
             let node = self
                 .root
                 .nodes
                 .get(index)
-                .ok_or_else(|| GltfError::Reference {
-                    from: user,
-                    to: format!("node {index}"),
-                })?;
+                .ok_or_else(|| GltfError::Reference { from: user, to: format!("node {index}") })?;
             let name = self.name_of(node, index);
             if std::mem::replace(&mut self.visited[index], true) {
                 return Err(GltfError::Cycle(name));
@@ -104,12 +86,7 @@ impl<'a> Walk<'a> {
             }
             let path = parent.map_or(name.clone(), |p| format!("{}/{name}", out.nodes[p].path));
             let own = out.nodes.len();
-            out.nodes.push(ImportedNode {
-                name,
-                path,
-                parent,
-                surfaces: Vec::new(),
-            });
+            out.nodes.push(ImportedNode { name, path, parent, surfaces: Vec::new() });
             if let Some(mesh) = node.mesh {
                 self.bake(mesh.value(), own, world_from_node, out)?;
             }
@@ -139,9 +116,7 @@ impl<'a> Walk<'a> {
     }
 
     fn name_of(&self, node: &json::Node, index: usize) -> String {
-        let mesh = node
-            .mesh
-            .and_then(|mesh| self.root.meshes.get(mesh.value()));
+        let mesh = node.mesh.and_then(|mesh| self.root.meshes.get(mesh.value()));
         node.name
             .clone()
             .or_else(|| mesh?.name.clone())
@@ -157,14 +132,10 @@ impl<'a> Walk<'a> {
         out: &mut Imported,
     ) -> Result<(), GltfError> {
         let name = out.nodes[node].name.clone();
-        let mesh = self
-            .root
-            .meshes
-            .get(mesh_index)
-            .ok_or_else(|| GltfError::Reference {
-                from: format!("node \"{name}\""),
-                to: format!("mesh {mesh_index}"),
-            })?;
+        let mesh = self.root.meshes.get(mesh_index).ok_or_else(|| GltfError::Reference {
+            from: format!("node \"{name}\""),
+            to: format!("mesh {mesh_index}"),
+        })?;
         let mut of_material: Vec<(usize, u32)> = Vec::new();
         for primitive in &mesh.primitives {
             let Some(faces) = self.faces(primitive, &name, world_from_node, out)? else {
@@ -172,10 +143,8 @@ impl<'a> Walk<'a> {
             };
             let material = self.material_of(primitive, &name, out)?;
             let known = of_material.iter().find(|(known, _)| *known == material);
-            let surface = known.map_or_else(
-                || out.mesh.add_surface(name.clone(), material, false),
-                |(_, surface)| *surface,
-            );
+            let surface = known
+                .map_or_else(|| out.mesh.add_surface(name.clone(), material, false), |(_, surface)| *surface);
             if known.is_none() {
                 of_material.push((material, surface));
                 out.nodes[node].surfaces.push(surface);
@@ -190,8 +159,7 @@ impl<'a> Walk<'a> {
         }
         if of_material.len() > 1 {
             for (material, surface) in of_material {
-                out.mesh.surfaces[surface as usize].name =
-                    format!("{name}.{}", out.materials[material].name);
+                out.mesh.surfaces[surface as usize].name = format!("{name}.{}", out.materials[material].name);
             }
         }
         Ok(())
@@ -207,27 +175,18 @@ impl<'a> Walk<'a> {
     ) -> Result<Option<Vec<[u32; 3]>>, GltfError> {
         let user = format!("node \"{name}\"");
         let mode = match primitive.mode {
-            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
-                mode
-            }
+            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
             Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => {
                 self.skipped += 1;
                 return Ok(None);
             }
             Checked::Invalid => {
-                return Err(GltfError::Reference {
-                    from: user,
-                    to: "a drawing mode".to_owned(),
-                });
+                return Err(GltfError::Reference { from: user, to: "a drawing mode".to_owned() });
             }
         };
-        let accessor = primitive
-            .attributes
-            .get(&Checked::Valid(Semantic::Positions))
-            .ok_or_else(|| GltfError::Reference {
-                from: user.clone(),
-                to: "a POSITION attribute".to_owned(),
-            })?;
+        let accessor = primitive.attributes.get(&Checked::Valid(Semantic::Positions)).ok_or_else(|| {
+            GltfError::Reference { from: user.clone(), to: "a POSITION attribute".to_owned() }
+        })?;
         let points = self.buffers.positions(*accessor, &user)?;
         let indices = match primitive.indices {
             Some(indices) => self.buffers.indices(indices, &user)?,
@@ -239,11 +198,7 @@ impl<'a> Walk<'a> {
             return Err(GltfError::TooLarge);
         }
         if let Some(&index) = indices.iter().find(|&&i| i as usize >= points.len()) {
-            return Err(GltfError::IndexOutOfRange {
-                node: name.to_owned(),
-                index,
-                count: points.len(),
-            });
+            return Err(GltfError::IndexOutOfRange { node: name.to_owned(), index, count: points.len() });
         }
         if mode == Mode::Triangles && !indices.len().is_multiple_of(3) {
             self.cut += 1;
@@ -252,10 +207,7 @@ impl<'a> Walk<'a> {
         for (index, &point) in points.iter().enumerate() {
             let point = world_from_node.transform_point3(point);
             if !point.is_finite() {
-                return Err(GltfError::NotFinite {
-                    node: name.to_owned(),
-                    index,
-                });
+                return Err(GltfError::NotFinite { node: name.to_owned(), index });
             }
             out.mesh.positions.push(point);
         }
@@ -264,12 +216,7 @@ impl<'a> Walk<'a> {
             let [a, b, c] = [first + a, first + b, first + c];
             if mirrored { [a, c, b] } else { [a, b, c] }
         };
-        Ok(Some(
-            triangles_of(mode, &indices)
-                .into_iter()
-                .map(orient)
-                .collect(),
-        ))
+        Ok(Some(triangles_of(mode, &indices).into_iter().map(orient).collect()))
     }
 
     fn material_of(
@@ -280,10 +227,7 @@ impl<'a> Walk<'a> {
     ) -> Result<usize, GltfError> {
         let Some(index) = primitive.material else {
             return Ok(*self.default_material.get_or_insert_with(|| {
-                out.materials.push(ImportedMaterial {
-                    name: "default".to_owned(),
-                    reflectance: None,
-                });
+                out.materials.push(ImportedMaterial { name: "default".to_owned(), reflectance: None });
                 out.materials.len() - 1
             }));
         };
@@ -302,23 +246,12 @@ fn triangles_of(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
         Mode::TriangleStrip => indices
             .windows(3)
             .enumerate()
-            .map(|(i, w)| {
-                if i % 2 == 0 {
-                    [w[0], w[1], w[2]]
-                } else {
-                    [w[0], w[2], w[1]]
-                }
-            })
+            .map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
             .collect(),
-        Mode::TriangleFan => indices
-            .windows(2)
-            .skip(1)
-            .map(|w| [indices[0], w[0], w[1]])
-            .collect(),
-        Mode::Triangles | Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => indices
-            .chunks_exact(3)
-            .map(|c| [c[0], c[1], c[2]])
-            .collect(),
+        Mode::TriangleFan => indices.windows(2).skip(1).map(|w| [indices[0], w[0], w[1]]).collect(),
+        Mode::Triangles | Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => {
+            indices.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
+        }
     }
 }
 

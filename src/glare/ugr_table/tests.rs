@@ -21,8 +21,7 @@ impl Sample {
         let text = reference_data(&format!("ugr_tables/ugr_sample_{name}.ldt"))?;
         let lines: Vec<&str> = text.lines().map(str::trim).collect();
         let number = |line: usize| lines[line - 1].parse::<f64>().unwrap();
-        let (symmetry, planes, gammas) =
-            (number(3) as usize, number(4) as usize, number(6) as usize);
+        let (symmetry, planes, gammas) = (number(3) as usize, number(4) as usize, number(6) as usize);
         let stored = match symmetry {
             1 => 1,
             4 => planes / 4 + 1,
@@ -33,9 +32,7 @@ impl Sample {
         let cd_per_klm = number(29) / 1000.0;
         let planes_cd = (0..stored)
             .map(|plane| {
-                (0..gammas)
-                    .map(|gamma| number(first + 1 + plane * gammas + gamma) * cd_per_klm)
-                    .collect()
+                (0..gammas).map(|gamma| number(first + 1 + plane * gammas + gamma) * cd_per_klm).collect()
             })
             .collect();
         Some(Self {
@@ -50,12 +47,7 @@ impl Sample {
 
     /// Bilinear in C and γ; C90 lies along +x, C0 along −y.
     fn intensity_cd(&self, direction: DVec3) -> f64 {
-        let gamma = direction
-            .x
-            .hypot(direction.y)
-            .atan2(-direction.z)
-            .to_degrees()
-            / self.gamma_step_deg;
+        let gamma = direction.x.hypot(direction.y).atan2(-direction.z).to_degrees() / self.gamma_step_deg;
         let c = direction.x.abs().atan2(direction.y.abs()).to_degrees() / self.c_step_deg;
         let at = |plane: usize| {
             let values = &self.planes_cd[plane.min(self.planes_cd.len() - 1)];
@@ -98,9 +90,8 @@ impl Sample {
 
     fn table(&self, shr: f64) -> UgrTable {
         // The zones are asked for once per room and set; tabulate them by degree.
-        let degrees: Vec<f64> = (0..180)
-            .map(|d| self.zonal_flux_lm(f64::from(d), f64::from(d + 1)))
-            .collect();
+        let degrees: Vec<f64> =
+            (0..180).map(|d| self.zonal_flux_lm(f64::from(d), f64::from(d + 1))).collect();
         let zones = |from: f64, to: f64| degrees[from as usize..to as usize].iter().sum::<f64>();
         let input = TableInput {
             intensity_cd: &|direction| self.intensity_cd(direction),
@@ -122,11 +113,7 @@ fn differences(sample: &str, program: &str, shr: f64) -> Option<Vec<(f64, String
             let Ok(published) = field.parse::<f64>() else {
                 continue;
             };
-            let row = if column < 5 {
-                &ours.crosswise[room]
-            } else {
-                &ours.endwise[room]
-            };
+            let row = if column < 5 { &ours.crosswise[room] } else { &ours.endwise[room] };
             let (x, y) = ours.rooms[room];
             let place = format!("sample {sample} {x}H×{y}H column {column}, {program} {published}");
             all.push((row[column % 5].clone().unwrap() - published, place));
@@ -137,14 +124,8 @@ fn differences(sample: &str, program: &str, shr: f64) -> Option<Vec<(f64, String
 
 /// Share of cells within `tolerance`, and the largest difference; prints both.
 fn summary(title: &str, all: &[(f64, String)], tolerance: f64) -> (f64, f64) {
-    let inside = all
-        .iter()
-        .filter(|(difference, _)| difference.abs() <= tolerance)
-        .count();
-    let worst = all
-        .iter()
-        .map(|(difference, _)| difference.abs())
-        .fold(0.0, f64::max);
+    let inside = all.iter().filter(|(difference, _)| difference.abs() <= tolerance).count();
+    let worst = all.iter().map(|(difference, _)| difference.abs()).fold(0.0, f64::max);
     let mean = all.iter().map(|(difference, _)| difference).sum::<f64>() / all.len() as f64;
     let share = inside as f64 / all.len() as f64;
     println!(
@@ -157,10 +138,7 @@ fn summary(title: &str, all: &[(f64, String)], tolerance: f64) -> (f64, f64) {
 
 /// [`summary`], then what lies outside.
 fn report(title: &str, all: &[(f64, String)], tolerance: f64) -> (f64, f64) {
-    for (difference, place) in all
-        .iter()
-        .filter(|(difference, _)| difference.abs() > tolerance)
-    {
+    for (difference, place) in all.iter().filter(|(difference, _)| difference.abs() > tolerance) {
         println!("  {difference:+.3} {place}");
     }
     summary(title, all, tolerance)
@@ -222,19 +200,14 @@ fn the_spacing_moves_a_narrow_beam_by_several_ugr_and_a_diffuse_strip_hardly() {
         let mut steps = Vec::new();
         for room in 0..ROOMS.len() {
             for set in 0..REFLECTANCES.len() {
-                for (dense, wide) in [
-                    (&dense.crosswise, &wide.crosswise),
-                    (&dense.endwise, &wide.endwise),
-                ] {
-                    steps
-                        .push(dense[room][set].clone().unwrap() - wide[room][set].clone().unwrap());
+                for (dense, wide) in [(&dense.crosswise, &wide.crosswise), (&dense.endwise, &wide.endwise)] {
+                    steps.push(dense[room][set].clone().unwrap() - wide[room][set].clone().unwrap());
                 }
             }
         }
         let mean = steps.iter().sum::<f64>() / steps.len() as f64;
-        let [least, most] = steps.iter().fold([f64::MAX, f64::MIN], |[a, b], step| {
-            [a.min(*step), b.max(*step)]
-        });
+        let [least, most] =
+            steps.iter().fold([f64::MAX, f64::MIN], |[a, b], step| [a.min(*step), b.max(*step)]);
         println!("sample {name}: SHR 0.25 less SHR 1: {least:+.2} … {most:+.2}, mean {mean:+.2}");
         means.push(mean);
     }
@@ -271,13 +244,11 @@ fn a_brighter_panel_shifts_the_whole_table() {
         });
         // A Lambertian panel looks the same from both sides: crosswise and endwise agree.
         for room in 0..ROOMS.len() {
-            let difference = table_one.crosswise[room][3].clone().unwrap()
-                - table_one.endwise[room][3].clone().unwrap();
+            let difference =
+                table_one.crosswise[room][3].clone().unwrap() - table_one.endwise[room][3].clone().unwrap();
             assert!(difference.abs() < 1e-9);
         }
-        assert!(
-            table(one, 0.3).is_err() && table(one, 0.0).is_err() && table(one, f64::NAN).is_err()
-        );
+        assert!(table(one, 0.3).is_err() && table(one, 0.0).is_err() && table(one, f64::NAN).is_err());
     });
 }
 
@@ -292,26 +263,16 @@ fn rooms_between_the_tables_rooms_are_interpolated_and_outside_clamped() {
             let at = |room: usize| table.crosswise[room][0].clone().unwrap();
             let close = |a: &Result<f64, Undefined>, b: f64| (a.clone().unwrap() - b).abs() < 1e-9;
             for (room, (x, y)) in ROOMS.into_iter().enumerate() {
-                assert!(
-                    close(&value(x, y).crosswise, at(room)) && value(x, y).notes.is_empty(),
-                    "{x} {y}"
-                );
+                assert!(close(&value(x, y).crosswise, at(room)) && value(x, y).notes.is_empty(), "{x} {y}");
             }
-            assert!(close(
-                &value(3.0, 2.5).crosswise,
-                (at(0) + at(1) + at(6) + at(7)) / 4.0
-            ));
+            assert!(close(&value(3.0, 2.5).crosswise, (at(0) + at(1) + at(6) + at(7)) / 4.0));
             // 8H × 2H is no room of the table: its column begins at 4H.
             for (x, y, room) in [(8.0, 2.0, 12), (30.0, 30.0, 18), (1.0, 1.0, 0)] {
                 assert!(close(&value(x, y).crosswise, at(room)), "{x} {y}");
                 assert_eq!(value(x, y).notes.len(), 1);
             }
             let grey = table.room(4.0, 8.0, [0.65, 0.45, 0.3]).unwrap();
-            assert!(
-                grey.notes[0].contains("70/50/20 taken for 65/45/30"),
-                "{:?}",
-                grey.notes
-            );
+            assert!(grey.notes[0].contains("70/50/20 taken for 65/45/30"), "{:?}", grey.notes);
             assert!(table.room(f64::NAN, 4.0, [0.7, 0.5, 0.2]).is_err());
         },
     );
@@ -330,30 +291,13 @@ fn luminaires_the_method_was_not_made_for_are_refused() {
         1.0,
         |input| {
             let up = |from: f64, to: f64| {
-                if from >= 90.0 {
-                    800.0
-                } else {
-                    200.0 * (to - from) / 90.0
-                }
+                if from >= 90.0 { 800.0 } else { 200.0 * (to - from) / 90.0 }
             };
-            let indirect = TableInput {
-                zonal_flux_lm: &up,
-                flux_lm: 1000.0,
-                ..*input
-            };
+            let indirect = TableInput { zonal_flux_lm: &up, flux_lm: 1000.0, ..*input };
             assert!(reason(&indirect).contains("80 % of the flux goes up"));
-            let ceiling = TableInput {
-                projected_area_m2: &|_| 2.0,
-                ..*input
-            };
+            let ceiling = TableInput { projected_area_m2: &|_| 2.0, ..*input };
             assert!(reason(&ceiling).contains("2.00 m²"));
-            assert!(
-                reason(&TableInput {
-                    flux_lm: 0.0,
-                    ..*input
-                })
-                .contains("no flux")
-            );
+            assert!(reason(&TableInput { flux_lm: 0.0, ..*input }).contains("no flux"));
         },
     );
 }

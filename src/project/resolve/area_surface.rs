@@ -41,9 +41,7 @@ pub fn on_surface(
                 None if drafts.len() > 1 => "name the area's `room`".to_owned(),
                 None | Some(_) => {
                     let names = found.iter().map(|(world, surface)| {
-                        drafts[*world].mesh.surfaces[*surface as usize]
-                            .name
-                            .as_str()
+                        drafts[*world].mesh.surfaces[*surface as usize].name.as_str()
                     });
                     suggestion("", names)
                 }
@@ -55,17 +53,11 @@ pub fn on_surface(
     let draft = &drafts[world];
     let Some((centre, normal)) = plane_of(&draft.mesh, surface) else {
         let message = format!("the surface \"{wanted_name}\" is not plane within 1 mm");
-        context.error(
-            &name.span(),
-            message,
-            "an area needs a plane surface, or `points`",
-        );
+        context.error(&name.span(), message, "an area needs a plane surface, or `points`");
         return None;
     };
     let own = draft.rooms.iter().position(|room| {
-        [&room.walls, &room.ceiling, &room.floor]
-            .iter()
-            .any(|list| list.contains(&surface))
+        [&room.walls, &room.ceiling, &room.floor].iter().any(|list| list.contains(&surface))
     });
     let room = match (wanted, own, locate(drafts, centre)) {
         (Some((_, room)), _, _) | (None, Some(room), _) => room,
@@ -80,18 +72,9 @@ pub fn on_surface(
     let limits = &draft.rooms[room];
     let middle = limits.footprint.iter().sum::<DVec2>() / limits.footprint.len() as f64;
     let middle = middle.extend(limits.floor_m + 0.5 * limits.height_m);
-    let normal = if normal.dot(middle - centre) < 0.0 {
-        -normal
-    } else {
-        normal
-    };
+    let normal = if normal.dot(middle - centre) < 0.0 { -normal } else { normal };
     let (origin, u, v) = bounding_rectangle(&draft.mesh, surface, normal);
-    let shape = AreaShape::Surface {
-        surface,
-        origin,
-        u,
-        v,
-    };
+    let shape = AreaShape::Surface { surface, origin, u, v };
     Some((shape, world, room))
 }
 
@@ -107,10 +90,7 @@ fn plane_of(mesh: &Mesh, surface: u32) -> Option<(DVec3, DVec3)> {
     let (mut sum, mut total) = (DVec3::ZERO, 0.0);
     for index in own() {
         let corners = mesh.corners(index);
-        if corners
-            .iter()
-            .any(|p| (p - origin).dot(normal).abs() > 1e-3)
-        {
+        if corners.iter().any(|p| (p - origin).dot(normal).abs() > 1e-3) {
             return None;
         }
         let (_, area_m2) = mesh.normal_and_area(index);
@@ -154,12 +134,7 @@ mod tests {
     fn the_rectangle_of_a_wall_looks_along_the_given_normal() {
         let mut mesh = Mesh::default();
         let surface = mesh.add_surface("Wall", 0, false);
-        let corners = [
-            [1.0, 0.0, 0.0],
-            [5.0, 0.0, 0.0],
-            [5.0, 0.0, 3.0],
-            [1.0, 0.0, 3.0],
-        ];
+        let corners = [[1.0, 0.0, 0.0], [5.0, 0.0, 0.0], [5.0, 0.0, 3.0], [1.0, 0.0, 3.0]];
         mesh.add_quad(corners.map(DVec3::from_array), surface);
         for normal in [DVec3::Y, DVec3::NEG_Y] {
             let (origin, u, v) = bounding_rectangle(&mesh, surface, normal);

@@ -63,22 +63,16 @@ pub fn add(
             light_scene,
             shape,
             rule,
-            border_m: section
-                .border
-                .as_ref()
-                .map_or(0.0, |border| *border.get_ref()),
+            border_m: section.border.as_ref().map_or(0.0, |border| *border.get_ref()),
             quantities,
         });
     }
     for (world, index, of) in surroundings {
         let areas = &drafts[world].areas;
-        let task = areas
-            .iter()
-            .position(|area| area.name == *of.get_ref() && area.kind == AreaKind::Task);
+        let task = areas.iter().position(|area| area.name == *of.get_ref() && area.kind == AreaKind::Task);
         // A task area with a mistake of its own is not unknown.
         let written = sections.iter().map(At::get_ref).any(|section| {
-            section.name.get_ref() == of.get_ref()
-                && section.kind.is_none_or(|kind| kind == AreaKind::Task)
+            section.name.get_ref() == of.get_ref() && section.kind.is_none_or(|kind| kind == AreaKind::Task)
         });
         let lost = written && !areas.iter().any(|area| area.name == *of.get_ref());
         if task.is_none() && !lost {
@@ -98,9 +92,7 @@ pub fn light_scene_index(
     context: &mut Context,
 ) -> Option<usize> {
     let name = name?;
-    let found = light_scenes
-        .iter()
-        .position(|scene| scene.name == *name.get_ref());
+    let found = light_scenes.iter().position(|scene| scene.name == *name.get_ref());
     if found.is_none() {
         let known = light_scenes.iter().map(|scene| scene.name.as_str());
         let hint = suggestion(name.get_ref(), known);
@@ -243,11 +235,7 @@ fn rectangle(rect: &At<RectSection>, context: &mut Context) -> Option<(AreaShape
     }
     let [origin, u, v] = [origin, u, v].map(|vector| DVec3::from_array(*vector.get_ref()));
     if !(u.length() >= SMALLEST_M && v.length() >= SMALLEST_M) {
-        context.error(
-            &span,
-            "the area has no size",
-            "u and v are its full edges in metres",
-        );
+        context.error(&span, "the area has no size", "u and v are its full edges in metres");
         return None;
     }
     if u.dot(v).abs() > 1e-6 * u.length() * v.length() {
@@ -265,23 +253,12 @@ fn outline(corners: &At<Vec<[f64; 3]>>, context: &mut Context) -> Option<Vec<DVe
             return None;
         }
     }
-    let points: Vec<DVec3> = corners
-        .get_ref()
-        .iter()
-        .map(|c| DVec3::from_array(*c))
-        .collect();
+    let points: Vec<DVec3> = corners.get_ref().iter().map(|c| DVec3::from_array(*c)).collect();
     let first = points.first().copied().unwrap_or_default();
     // Newell: the sum of the corners' cross products is twice the area along the normal.
-    let doubled: DVec3 = points
-        .windows(2)
-        .map(|pair| (pair[0] - first).cross(pair[1] - first))
-        .sum();
+    let doubled: DVec3 = points.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
     if points.len() < 3 || !(doubled.length() > 2.0 * SMALLEST_M * SMALLEST_M) {
-        context.error(
-            &span,
-            "the area has no size",
-            "a polygon needs three corners or more",
-        );
+        context.error(&span, "the area has no size", "a polygon needs three corners or more");
         return None;
     }
     let normal = doubled.normalize();
@@ -291,10 +268,7 @@ fn outline(corners: &At<Vec<[f64; 3]>>, context: &mut Context) -> Option<Vec<DVe
     }
     let u = normal.any_orthonormal_vector();
     let v = normal.cross(u);
-    let flat: Vec<DVec2> = points
-        .iter()
-        .map(|p| DVec2::new(p.dot(u), p.dot(v)))
-        .collect();
+    let flat: Vec<DVec2> = points.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
     if polygon::crossing(&flat).is_some() {
         context.error(&span, "the polygon intersects itself", "");
         return None;

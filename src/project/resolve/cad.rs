@@ -25,20 +25,11 @@ pub fn draft(
     context: &mut Context,
 ) -> Option<Draft> {
     let bytes = context.read(path, LARGE_FILE)?;
-    let folder = path
-        .get_ref()
-        .rfind(['/', '\\'])
-        .map_or("", |at| &path.get_ref()[..=at]);
+    let folder = path.get_ref().rfind(['/', '\\']).map_or("", |at| &path.get_ref()[..=at]);
     let mut read = |relative: &str| {
         context
             .read_path(&format!("{folder}{relative}"), LARGE_FILE)
-            .map_err(|(message, hint)| {
-                if hint.is_empty() {
-                    message
-                } else {
-                    format!("{message} ({hint})")
-                }
-            })
+            .map_err(|(message, hint)| if hint.is_empty() { message } else { format!("{message} ({hint})") })
     };
     let imported = match gltf::import(&bytes, &mut read) {
         Ok(imported) => imported,
@@ -47,32 +38,20 @@ pub fn draft(
             return None;
         }
     };
-    let Imported {
-        mesh,
-        materials,
-        nodes,
-        biases,
-        ..
-    } = imported;
+    let Imported { mesh, materials, nodes, biases, .. } = imported;
     for bias in biases {
         context.note(format!("{}: {bias}", path.get_ref()));
     }
     let mut draft = Draft::new(path.get_ref(), path.span());
     draft.cad = true;
     for (index, material) in materials.iter().enumerate() {
-        let used = mesh
-            .surfaces
-            .iter()
-            .any(|surface| surface.material == index);
+        let used = mesh.surfaces.iter().any(|surface| surface.material == index);
         let resolved = match (palette.find(&material.name), material.reflectance) {
             (Lookup::Found(entry), _) => Some(entry),
             (Lookup::Absent, Some(reflectance)) => Some(lambert(&material.name, reflectance)),
             (Lookup::Absent, None) if used => {
-                let message = format!(
-                    "material \"{}\" of {} has no photometric data",
-                    material.name,
-                    path.get_ref()
-                );
+                let message =
+                    format!("material \"{}\" of {} has no photometric data", material.name, path.get_ref());
                 let hint = format!("[materials] \"{}\" = {{ reflectance = … }}", material.name);
                 context.error(&path.span(), message, &hint);
                 None
@@ -80,9 +59,7 @@ pub fn draft(
             (Lookup::Absent | Lookup::Wrong, _) => None,
         };
         // One entry per material of the file keeps the surfaces' indices; a missing one was reported.
-        draft
-            .materials
-            .push(resolved.unwrap_or_else(|| lambert(&material.name, 0.0)));
+        draft.materials.push(resolved.unwrap_or_else(|| lambert(&material.name, 0.0)));
     }
     draft.mesh = mesh;
     draft.nodes = nodes;
@@ -112,11 +89,7 @@ fn add_rooms(
     let whole = rooms.iter().filter(|room| room.get_ref().node.is_none());
     for second in whole.skip(1) {
         let message = "two rooms without footprint or node";
-        context.error(
-            &second.get_ref().name.span(),
-            message,
-            "give each its `node`",
-        );
+        context.error(&second.get_ref().name.span(), message, "give each its `node`");
     }
     for room in rooms {
         let room = room.get_ref();
@@ -174,9 +147,8 @@ fn bounded_room(
     if shell.floor.is_empty() && shell.walls.is_empty() && shell.ceiling.is_empty() {
         shell = shell_of(&draft.mesh, surfaces, (low, high), true);
         if !shell.floor.is_empty() {
-            context.note(format!(
-                "room \"{name}\": faces of the shell look outwards; both sides reflect alike"
-            ));
+            context
+                .note(format!("room \"{name}\": faces of the shell look outwards; both sides reflect alike"));
         }
     }
     for &(surface, _) in shell.floor.iter().chain(&shell.ceiling).chain(&shell.walls) {
@@ -194,12 +166,7 @@ fn bounded_room(
 
 /// Surfaces of which more than half lies on the bounds and looks inwards (or, `either_side`, outwards
 /// too). A surface that is floor and walls at once is listed under both.
-fn shell_of(
-    mesh: &Mesh,
-    surfaces: &[u32],
-    (low, high): (DVec3, DVec3),
-    either_side: bool,
-) -> Shell {
+fn shell_of(mesh: &Mesh, surfaces: &[u32], (low, high): (DVec3, DVec3), either_side: bool) -> Shell {
     const FLOOR: usize = 0;
     const CEILING: usize = 1;
     const WALLS: usize = 2;
@@ -220,10 +187,7 @@ fn shell_of(
         let on = planes.iter().find(|(_, inward, at)| {
             let cos = normal.dot(*inward);
             let faces = cos > 0.9 || (either_side && cos < -0.9);
-            faces
-                && corners
-                    .iter()
-                    .all(|p| (p - at).dot(*inward).abs() < SHELL_M)
+            faces && corners.iter().all(|p| (p - at).dot(*inward).abs() < SHELL_M)
         });
         if let Some((part, _, _)) = on {
             parts[*part] += area_m2;
@@ -235,11 +199,9 @@ fn shell_of(
         if parts.iter().sum::<f64>() <= 0.5 * total {
             continue;
         }
-        for (part, list) in [
-            (FLOOR, &mut shell.floor),
-            (CEILING, &mut shell.ceiling),
-            (WALLS, &mut shell.walls),
-        ] {
+        for (part, list) in
+            [(FLOOR, &mut shell.floor), (CEILING, &mut shell.ceiling), (WALLS, &mut shell.walls)]
+        {
             if parts[part] > 0.05 * total {
                 list.push((surface, parts[part]));
             }

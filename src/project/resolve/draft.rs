@@ -74,13 +74,10 @@ impl Draft {
 
     /// Index of a material, added when it is new.
     pub fn material(&mut self, material: &Material) -> usize {
-        self.materials
-            .iter()
-            .position(|known| known == material)
-            .unwrap_or_else(|| {
-                self.materials.push(material.clone());
-                self.materials.len() - 1
-            })
+        self.materials.iter().position(|known| known == material).unwrap_or_else(|| {
+            self.materials.push(material.clone());
+            self.materials.len() - 1
+        })
     }
 
     /// Whether some surface emits.
@@ -117,16 +114,12 @@ impl Draft {
 
 /// World and room of a name.
 pub fn room_named(drafts: &[Draft], name: &str) -> Option<(usize, usize)> {
-    rooms(drafts)
-        .find(|(_, _, room)| room.name == name)
-        .map(|(world, index, _)| (world, index))
+    rooms(drafts).find(|(_, _, room)| room.name == name).map(|(world, index, _)| (world, index))
 }
 
 /// All room names in order.
 pub fn room_names(drafts: &[Draft]) -> Vec<&str> {
-    rooms(drafts)
-        .map(|(_, _, room)| room.name.as_str())
-        .collect()
+    rooms(drafts).map(|(_, _, room)| room.name.as_str()).collect()
 }
 
 /// All rooms with the indices of world and room.
@@ -140,9 +133,8 @@ pub fn rooms(drafts: &[Draft]) -> impl Iterator<Item = (usize, usize, &Room)> {
 /// The room in which a point lies; where rooms of one world overlap, the smallest.
 pub fn locate(drafts: &[Draft], point: DVec3) -> Located {
     for tolerance_m in [1e-6, TOLERANCE_M] {
-        let mut found: Vec<(usize, usize, &Room)> = rooms(drafts)
-            .filter(|(_, _, room)| within(room, point, tolerance_m))
-            .collect();
+        let mut found: Vec<(usize, usize, &Room)> =
+            rooms(drafts).filter(|(_, _, room)| within(room, point, tolerance_m)).collect();
         found.sort_by(|a, b| {
             let area = |room: &Room| polygon::signed_area_m2(&room.footprint);
             area(a.2).total_cmp(&area(b.2))

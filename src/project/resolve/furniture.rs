@@ -17,13 +17,7 @@ pub fn add(
 ) {
     for (index, section) in sections.iter().enumerate() {
         let span = section.span();
-        let FurnitureSection {
-            name,
-            at,
-            size,
-            material,
-            rotate,
-        } = section.get_ref();
+        let FurnitureSection { name, at, size, material, rotate } = section.get_ref();
         let material = palette.named(material, context);
         let turn_deg = rotate.as_ref().map_or(0.0, |rotate| *rotate.get_ref());
         let mut ok = context.finite(at.get_ref(), &at.span());
@@ -36,10 +30,8 @@ pub fn add(
         let (Some(material), true) = (material, ok) else {
             continue;
         };
-        let name = name.as_ref().map_or_else(
-            || format!("Furniture_{}", index + 1),
-            |name| name.get_ref().clone(),
-        );
+        let name =
+            name.as_ref().map_or_else(|| format!("Furniture_{}", index + 1), |name| name.get_ref().clone());
         let origin = DVec3::from_array(*at.get_ref());
         let size = DVec3::from_array(*size.get_ref());
         let turn = DMat3::from_rotation_z(turn_deg.to_radians());

@@ -30,10 +30,8 @@ impl Table {
         let text = context.read_text(path)?;
         let file = path.get_ref().clone();
         let before = context.diagnostics.len();
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(text.as_bytes());
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
         let header = match reader.headers() {
             Ok(header) => header.clone(),
             Err(error) => {
@@ -53,10 +51,8 @@ impl Table {
                 context.error_in(&file, &text, 1, message, &hint);
             }
         }
-        let of: Vec<Option<usize>> = columns
-            .iter()
-            .map(|name| header.iter().position(|known| known == *name))
-            .collect();
+        let of: Vec<Option<usize>> =
+            columns.iter().map(|name| header.iter().position(|known| known == *name)).collect();
         let mut rows = Vec::new();
         for record in reader.records() {
             match record {
@@ -80,12 +76,7 @@ impl Table {
         if rows.is_empty() && context.diagnostics.len() == before {
             context.error_in(&file, &text, 1, "the list is empty".to_owned(), "");
         }
-        (context.diagnostics.len() == before).then_some(Self {
-            file,
-            text,
-            columns,
-            rows,
-        })
+        (context.diagnostics.len() == before).then_some(Self { file, text, columns, rows })
     }
 
     /// Reports a mistake in a row.
@@ -94,22 +85,14 @@ impl Table {
     }
 
     /// A finite number, `None` where the cell is empty; `Err` after a reported mistake.
-    pub fn number(
-        &self,
-        row: &Row,
-        column: usize,
-        context: &mut Context,
-    ) -> Result<Option<f64>, ()> {
+    pub fn number(&self, row: &Row, column: usize, context: &mut Context) -> Result<Option<f64>, ()> {
         let Some(cell) = &row.cells[column] else {
             return Ok(None);
         };
         match cell.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(Some(number)),
             Ok(_) | Err(_) => {
-                let message = format!(
-                    "{} must be a number, found \"{cell}\"",
-                    self.columns[column]
-                );
+                let message = format!("{} must be a number, found \"{cell}\"", self.columns[column]);
                 self.error(row, message, "decimals are written with a point", context);
                 Err(())
             }

@@ -41,16 +41,8 @@ impl Kind {
         if let Some(known) = self.made.iter().find(|k| k.maintenance == maintenance) {
             return Some(known.clone());
         }
-        let name = if self.made.is_empty() {
-            base.name.clone()
-        } else {
-            format!("{} ({room})", base.name)
-        };
-        let kind = Arc::new(LuminaireType {
-            name,
-            maintenance,
-            ..base.clone()
-        });
+        let name = if self.made.is_empty() { base.name.clone() } else { format!("{} ({room})", base.name) };
+        let kind = Arc::new(LuminaireType { name, maintenance, ..base.clone() });
         self.made.push(kind.clone());
         Some(kind)
     }
@@ -75,30 +67,17 @@ fn luminaire_type(
     section: &LuminaireSection,
     context: &mut Context,
 ) -> Option<LuminaireType> {
-    let maintenance = section
-        .maintenance
-        .as_ref()
-        .map_or(Some(Maintenance::NEW), |factor| {
-            maintenance(factor, context)
-        });
+    let maintenance =
+        section.maintenance.as_ref().map_or(Some(Maintenance::NEW), |factor| maintenance(factor, context));
     if let Some(ra) = &section.ra {
         context.in_range(ra, 0.0, 100.0, "ra");
     }
     let area = section.area.as_ref().map(|area| opening(area, context));
-    let flux = section
-        .flux
-        .as_ref()
-        .is_none_or(|flux| context.positive(*flux.get_ref(), &flux.span(), "flux"));
-    let sources = [
-        section.file.is_some(),
-        section.lambert.is_some(),
-        section.point.is_some(),
-    ];
+    let flux =
+        section.flux.as_ref().is_none_or(|flux| context.positive(*flux.get_ref(), &flux.span(), "flux"));
+    let sources = [section.file.is_some(), section.lambert.is_some(), section.point.is_some()];
     if sources.into_iter().filter(|given| *given).count() != 1 {
-        let message = format!(
-            "luminaire \"{}\" needs exactly one of file, lambert, point",
-            name.get_ref()
-        );
+        let message = format!("luminaire \"{}\" needs exactly one of file, lambert, point", name.get_ref());
         context.error(&name.span(), message, "");
         return None;
     }
@@ -121,20 +100,14 @@ fn luminaire_type(
         name: name.get_ref().clone(),
         flux_lm: source.distribution.flux().0,
         maintenance,
-        declared_ra: section
-            .ra
-            .as_ref()
-            .map(|ra| *ra.get_ref())
-            .or(source.declared_ra),
+        declared_ra: section.ra.as_ref().map(|ra| *ra.get_ref()).or(source.declared_ra),
         description: source.description,
         distribution: source.distribution,
         opening: source.opening,
         rated_flux_lm: source.rated_flux_lm,
         power_w: source.power_w,
-        file: section
-            .file
-            .as_ref()
-            .map_or(String::new(), |file| file.get_ref().clone()),
+        c0_azimuth_deg: source.c0_azimuth_deg,
+        file: section.file.as_ref().map_or(String::new(), |file| file.get_ref().clone()),
     })
 }
 
@@ -145,6 +118,7 @@ struct Source {
     rated_flux_lm: Option<f64>,
     power_w: Option<f64>,
     declared_ra: Option<f64>,
+    c0_azimuth_deg: f64,
 }
 
 fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
@@ -152,9 +126,7 @@ fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
     match photometry::parse(&bytes, file.get_ref()) {
         Ok(photometry) => {
             for finding in &photometry.findings {
-                let line = finding
-                    .line
-                    .map_or(String::new(), |line| format!(":{line}"));
+                let line = finding.line.map_or(String::new(), |line| format!(":{line}"));
                 context.note(format!("{}{line}: {}", file.get_ref(), finding.message));
             }
             Some(Source {
@@ -164,17 +136,17 @@ fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
                 rated_flux_lm: photometry.rated_flux_lm,
                 power_w: photometry.power_w,
                 declared_ra: photometry.colour_rendering,
+                c0_azimuth_deg: match photometry.format {
+                    photometry::Format::Eulumdat => -90.0,
+                    photometry::Format::Lm63 { .. } => 0.0,
+                },
             })
         }
         Err(error) => {
             let text = String::from_utf8_lossy(&bytes);
             let first = text.lines().nth(error.line.saturating_sub(1));
-            let source_line: String = first
-                .unwrap_or_default()
-                .chars()
-                .filter(|c| !c.is_control())
-                .take(120)
-                .collect();
+            let source_line: String =
+                first.unwrap_or_default().chars().filter(|c| !c.is_control()).take(120).collect();
             context.diagnostics.push(Diagnostic {
                 file: error.file,
                 line: error.line,
@@ -210,11 +182,7 @@ fn built_in(section: &LuminaireSection, has_area: bool, context: &mut Context) -
     if let (true, Some(area)) = (is_lambert, &section.area)
         && *area.get_ref() == OpeningChoice::File
     {
-        context.error(
-            &area.span(),
-            "there is no file whose area could be taken",
-            "",
-        );
+        context.error(&area.span(), "there is no file whose area could be taken", "");
         ok = false;
     }
     let lumens = Lumens(*flux.get_ref());
@@ -225,15 +193,11 @@ fn built_in(section: &LuminaireSection, has_area: bool, context: &mut Context) -
             IntensityDistribution::isotropic(lumens)
         },
         opening: Opening::Point,
-        description: if is_lambert {
-            "Lambertian source"
-        } else {
-            "Isotropic point source"
-        }
-        .to_owned(),
+        description: if is_lambert { "Lambertian source" } else { "Isotropic point source" }.to_owned(),
         rated_flux_lm: None,
         power_w: None,
         declared_ra: None,
+        c0_azimuth_deg: 0.0,
     })
 }
 
@@ -251,25 +215,16 @@ fn opening(area: &At<OpeningChoice>, context: &mut Context) -> Result<Option<Ope
     }
     Ok(match *area.get_ref() {
         OpeningChoice::File => None,
-        OpeningChoice::Rect([length_m, width_m]) => Some(Opening::Rect {
-            length_m,
-            width_m,
-            side_x_m: 0.0,
-            side_y_m: 0.0,
-        }),
-        OpeningChoice::Disc(diameter_m) => Some(Opening::Disc {
-            diameter_m,
-            height_m: 0.0,
-        }),
+        OpeningChoice::Rect([length_m, width_m]) => {
+            Some(Opening::Rect { length_m, width_m, side_x_m: 0.0, side_y_m: 0.0 })
+        }
+        OpeningChoice::Disc(diameter_m) => Some(Opening::Disc { diameter_m, height_m: 0.0 }),
     })
 }
 
 fn maintenance(factor: &At<Factor>, context: &mut Context) -> Option<Maintenance> {
     let maintenance = match *factor.get_ref() {
-        Factor::Whole(whole) => Maintenance {
-            llmf: whole,
-            ..Maintenance::NEW
-        },
+        Factor::Whole(whole) => Maintenance { llmf: whole, ..Maintenance::NEW },
         Factor::Parts { llmf, lsf, lmf } => Maintenance { llmf, lsf, lmf },
     };
     let Maintenance { llmf, lsf, lmf } = maintenance;

@@ -38,16 +38,9 @@ impl Palette {
     pub fn new(sections: &[Named<MaterialSection>], context: &mut Context) -> Self {
         let entries = sections
             .iter()
-            .map(|(name, section)| Entry {
-                name: name.clone(),
-                bsdf: bsdf(section, context),
-                used: false,
-            })
+            .map(|(name, section)| Entry { name: name.clone(), bsdf: bsdf(section, context), used: false })
             .collect();
-        Self {
-            entries,
-            known: Vec::new(),
-        }
+        Self { entries, known: Vec::new() }
     }
 
     /// The entry of this name, marked as used.
@@ -58,12 +51,7 @@ impl Palette {
             return Lookup::Absent;
         };
         entry.used = true;
-        entry.bsdf.map_or(Lookup::Wrong, |bsdf| {
-            Lookup::Found(Material {
-                name: name.to_owned(),
-                bsdf,
-            })
-        })
+        entry.bsdf.map_or(Lookup::Wrong, |bsdf| Lookup::Found(Material { name: name.to_owned(), bsdf }))
     }
 
     /// The material a place in the file names; an unknown one is reported.
@@ -73,10 +61,7 @@ impl Palette {
             Lookup::Wrong => return None,
             Lookup::Absent => {}
         }
-        let names = self
-            .entries
-            .iter()
-            .map(|entry| entry.name.get_ref().as_str());
+        let names = self.entries.iter().map(|entry| entry.name.get_ref().as_str());
         let hint = suggestion(name.get_ref(), names);
         let message = format!("no material \"{}\" in [materials]", name.get_ref());
         context.error(&name.span(), message, &hint);
@@ -86,9 +71,7 @@ impl Palette {
     /// Place of an entry.
     pub fn span(&self, name: &str) -> Option<Range<usize>> {
         let mut entries = self.entries.iter();
-        entries
-            .find(|entry| entry.name.get_ref() == name)
-            .map(|entry| entry.name.span())
+        entries.find(|entry| entry.name.get_ref() == name).map(|entry| entry.name.span())
     }
 
     /// Reports entries that belong to nothing: they are misspelt.
@@ -107,10 +90,7 @@ impl Palette {
 
 /// A diffuse material.
 pub fn lambert(name: &str, reflectance: f64) -> Material {
-    Material {
-        name: name.to_owned(),
-        bsdf: Bsdf::Lambert { reflectance },
-    }
+    Material { name: name.to_owned(), bsdf: Bsdf::Lambert { reflectance } }
 }
 
 /// Diffuse or total reflectance that counts for a room's means; `None` for panes.
@@ -125,25 +105,13 @@ pub fn mean_reflectance(bsdf: &Bsdf) -> Option<f64> {
 }
 
 fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
-    let MaterialSection {
-        reflectance,
-        specular,
-        phong,
-        phong_paper,
-        ward,
-        mirror,
-        glass,
-        opal,
-        emit,
-    } = section.get_ref();
+    let MaterialSection { reflectance, specular, phong, phong_paper, ward, mirror, glass, opal, emit } =
+        section.get_ref();
     let before = context.diagnostics.len();
     let whole = section.span();
-    for (value, name) in [
-        (reflectance, "reflectance"),
-        (specular, "specular"),
-        (mirror, "mirror"),
-        (glass, "glass"),
-    ] {
+    for (value, name) in
+        [(reflectance, "reflectance"), (specular, "specular"), (mirror, "mirror"), (glass, "glass")]
+    {
         if let Some(value) = value {
             context.in_range(value, 0.0, 1.0, name);
         }
@@ -155,11 +123,7 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
             context.error(&specular.span(), message, "");
         }
     }
-    if let Some(glossy) = [specular, phong, phong_paper, ward]
-        .into_iter()
-        .flatten()
-        .next()
-    {
+    if let Some(glossy) = [specular, phong, phong_paper, ward].into_iter().flatten().next() {
         context.error(
             &glossy.span(),
             "glossy reflection is not supported yet",
@@ -183,15 +147,11 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
         return None;
     }
     match (reflectance, mirror, glass, opal, emit) {
-        (Some(reflectance), None, None, None, None) => Some(Bsdf::Lambert {
-            reflectance: *reflectance.get_ref(),
-        }),
-        (None, Some(mirror), None, None, None) => Some(Bsdf::Mirror {
-            reflectance: *mirror.get_ref(),
-        }),
-        (None, None, Some(glass), None, None) => Some(Bsdf::Glass(Pane {
-            normal_transmittance: *glass.get_ref(),
-        })),
+        (Some(reflectance), None, None, None, None) => {
+            Some(Bsdf::Lambert { reflectance: *reflectance.get_ref() })
+        }
+        (None, Some(mirror), None, None, None) => Some(Bsdf::Mirror { reflectance: *mirror.get_ref() }),
+        (None, None, Some(glass), None, None) => Some(Bsdf::Glass(Pane::new(*glass.get_ref()))),
         (None, None, None, Some(opal), None) => Some(Bsdf::Opal {
             reflectance: *opal.get_ref().reflectance.get_ref(),
             transmittance: *opal.get_ref().transmittance.get_ref(),

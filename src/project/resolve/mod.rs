@@ -28,10 +28,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     let info = settings::info(&file.project, context);
     let mut palette = Palette::new(&file.materials, context);
     let mut drafts = rooms::drafts(file, &info.name, &mut palette, context);
-    let footprints = file
-        .rooms
-        .iter()
-        .filter(|room| room.get_ref().footprint.is_some());
+    let footprints = file.rooms.iter().filter(|room| room.get_ref().footprint.is_some());
     let expected = usize::from(file.scene.is_some()) + footprints.count();
     let rooms_complete = !file.rooms_lost && drafts.len() == expected;
     if !rooms_complete {
@@ -66,10 +63,8 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
             context.note(format!("nothing emits light in {}", draft.label));
         }
     }
-    let worlds: Vec<Option<World>> = drafts
-        .into_iter()
-        .map(|draft| world(draft, &palette, context))
-        .collect();
+    let worlds: Vec<Option<World>> =
+        drafts.into_iter().map(|draft| world(draft, &palette, context)).collect();
     Some(Project {
         info,
         worlds: worlds.into_iter().collect::<Option<_>>()?,
@@ -94,9 +89,7 @@ fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World
         Err(error) => {
             let span = match &error {
                 SceneError::NoAbsorption(name) => palette.span(name),
-                SceneError::NoTriangles
-                | SceneError::NotFinite { .. }
-                | SceneError::TooLarge(_) => None,
+                SceneError::NoTriangles | SceneError::NotFinite { .. } | SceneError::TooLarge(_) => None,
             };
             context.error(&span.unwrap_or(draft.span), error.to_string(), "");
             None

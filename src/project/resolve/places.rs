@@ -17,18 +17,7 @@ use crate::project::schema::{ArraySection, At, FieldSection, File, PlaceSection}
 const MAX_PLACED: usize = 100_000;
 
 /// Columns of the list of places; the first four are required.
-const COLUMNS: &[&str] = &[
-    "luminaire",
-    "x",
-    "y",
-    "z",
-    "aim_x",
-    "aim_y",
-    "aim_z",
-    "rotate",
-    "dim",
-    "group",
-];
+const COLUMNS: &[&str] = &["luminaire", "x", "y", "z", "aim_x", "aim_y", "aim_z", "rotate", "dim", "group"];
 
 /// How a luminaire hangs, apart from where.
 struct Hanging {
@@ -59,22 +48,11 @@ pub fn add(file: &File, mut kinds: Vec<Kind>, drafts: &mut [Draft], context: &mu
                 let mut report = |context: &mut Context, message: String, hint: &str| {
                     context.error(&span, message, hint);
                 };
-                hang(
-                    &hanging,
-                    &mut kinds,
-                    point,
-                    aim,
-                    drafts,
-                    context,
-                    &mut report,
-                );
+                hang(&hanging, &mut kinds, point, aim, drafts, context, &mut report);
             }
         }
     }
-    let list = file
-        .lists
-        .as_ref()
-        .and_then(|lists| lists.get_ref().places.as_ref());
+    let list = file.lists.as_ref().and_then(|lists| lists.get_ref().places.as_ref());
     if let Some(table) = list.and_then(|path| Table::read(path, COLUMNS, 4, context)) {
         for row in &table.rows {
             let Ok((hanging, point, aim)) = read_row(&table, row, &kinds, context) else {
@@ -83,15 +61,7 @@ pub fn add(file: &File, mut kinds: Vec<Kind>, drafts: &mut [Draft], context: &mu
             let mut report = |context: &mut Context, message: String, hint: &str| {
                 table.error(row, message, hint, context);
             };
-            hang(
-                &hanging,
-                &mut kinds,
-                point,
-                aim,
-                drafts,
-                context,
-                &mut report,
-            );
+            hang(&hanging, &mut kinds, point, aim, drafts, context, &mut report);
         }
     }
 }
@@ -103,9 +73,7 @@ fn read(
     drafts: &[Draft],
     context: &mut Context,
 ) -> Option<(Hanging, Vec<DVec3>)> {
-    let kind = kinds
-        .iter()
-        .position(|kind| kind.name == *section.luminaire.get_ref());
+    let kind = kinds.iter().position(|kind| kind.name == *section.luminaire.get_ref());
     if kind.is_none() {
         let name = section.luminaire.get_ref();
         let hint = suggestion(name, kinds.iter().map(|kind| kind.name.as_str()));
@@ -127,9 +95,9 @@ fn read(
         ok &= context.in_range(dim, 0.0, 1.0, "dim");
     }
     let points = match (&section.at, &section.array, &section.field) {
-        (Some(at), None, None) => context
-            .finite(at.get_ref(), &at.span())
-            .then(|| vec![DVec3::from_array(*at.get_ref())]),
+        (Some(at), None, None) => {
+            context.finite(at.get_ref(), &at.span()).then(|| vec![DVec3::from_array(*at.get_ref())])
+        }
         (None, Some(array), None) => array_points(array.get_ref(), context),
         (None, None, Some(field)) => field_points(field, drafts, context),
         _ => {
@@ -139,16 +107,8 @@ fn read(
     }?;
     let hanging = Hanging {
         kind: kind?,
-        group: section
-            .group
-            .as_ref()
-            .unwrap_or(&section.luminaire)
-            .get_ref()
-            .clone(),
-        rotate_deg: section
-            .rotate
-            .as_ref()
-            .map_or(0.0, |rotate| *rotate.get_ref()),
+        group: section.group.as_ref().unwrap_or(&section.luminaire).get_ref().clone(),
+        rotate_deg: section.rotate.as_ref().map_or(0.0, |rotate| *rotate.get_ref()),
         dim: section.dim.as_ref().map_or(1.0, |dim| *dim.get_ref()),
     };
     ok.then_some((hanging, points))
@@ -178,28 +138,15 @@ fn array_points(array: &ArraySection, context: &mut Context) -> Option<Vec<DVec3
     ok.then(|| {
         let from = DVec3::from_array(*from.get_ref());
         let first = DVec3::from_array(steps[0]);
-        let second = steps
-            .get(1)
-            .map_or(DVec3::ZERO, |step| DVec3::from_array(*step));
-        (0..m)
-            .flat_map(|j| (0..n).map(move |i| from + i as f64 * first + j as f64 * second))
-            .collect()
+        let second = steps.get(1).map_or(DVec3::ZERO, |step| DVec3::from_array(*step));
+        (0..m).flat_map(|j| (0..n).map(move |i| from + i as f64 * first + j as f64 * second)).collect()
     })
 }
 
 /// Rows lie along x, columns are counted along x; half a spacing to the walls.
-fn field_points(
-    field: &At<FieldSection>,
-    drafts: &[Draft],
-    context: &mut Context,
-) -> Option<Vec<DVec3>> {
+fn field_points(field: &At<FieldSection>, drafts: &[Draft], context: &mut Context) -> Option<Vec<DVec3>> {
     let span = field.span();
-    let FieldSection {
-        room,
-        rows,
-        columns,
-        height,
-    } = field.get_ref();
+    let FieldSection { room, rows, columns, height } = field.get_ref();
     let ok = context.finite(&[*height.get_ref()], &height.span());
     let names = room_names(drafts);
     let (world, index) = match (room, &names[..]) {
@@ -216,11 +163,7 @@ fn field_points(
         (None, []) => return None,
         (None, _) => {
             let hint = suggestion("", names.iter().copied());
-            context.error(
-                &span,
-                "there are several rooms; name the field's `room`",
-                &hint,
-            );
+            context.error(&span, "there are several rooms; name the field's `room`", &hint);
             return None;
         }
     };
@@ -275,20 +218,11 @@ fn read_row(
     let rotate_deg = table.number(row, 7, context)?.unwrap_or(0.0);
     let dim = table.number(row, 8, context)?.unwrap_or(1.0);
     if !(0.0..=1.0).contains(&dim) {
-        table.error(
-            row,
-            format!("dim must lie in 0 … 1, found {dim}"),
-            "",
-            context,
-        );
+        table.error(row, format!("dim must lie in 0 … 1, found {dim}"), "", context);
         return Err(());
     }
-    let hanging = Hanging {
-        kind,
-        group: row.cells[9].clone().unwrap_or_else(|| name.to_owned()),
-        rotate_deg,
-        dim,
-    };
+    let hanging =
+        Hanging { kind, group: row.cells[9].clone().unwrap_or_else(|| name.to_owned()), rotate_deg, dim };
     Ok((hanging, point, aim))
 }
 
@@ -321,10 +255,7 @@ fn hang(
             return;
         }
         Located::Ambiguous(rooms) => {
-            let message = format!(
-                "luminaire \"{}\" hangs in more than one room: {rooms}",
-                kind.name
-            );
+            let message = format!("luminaire \"{}\" hangs in more than one room: {rooms}", kind.name);
             report(context, message, "move the rooms' footprints apart");
             return;
         }

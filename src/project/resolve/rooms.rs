@@ -14,19 +14,12 @@ use crate::project::context::Context;
 use crate::project::schema::{At, BoxSection, File, RoomSection};
 
 /// Builds all worlds with their rooms.
-pub fn drafts(
-    file: &File,
-    project_name: &str,
-    palette: &mut Palette,
-    context: &mut Context,
-) -> Vec<Draft> {
+pub fn drafts(file: &File, project_name: &str, palette: &mut Palette, context: &mut Context) -> Vec<Draft> {
     let mut drafts = Vec::new();
     let sections = &file.rooms;
     check_names(sections, context);
-    let within: Vec<&At<RoomSection>> = sections
-        .iter()
-        .filter(|room| room.get_ref().footprint.is_none())
-        .collect();
+    let within: Vec<&At<RoomSection>> =
+        sections.iter().filter(|room| room.get_ref().footprint.is_none()).collect();
     let scene = file.scene.as_ref().map(|scene| (scene, scene.get_ref()));
     match scene {
         Some((_, scene)) if scene.file.is_some() && scene.room.is_none() => {
@@ -56,10 +49,7 @@ pub fn drafts(
             }
         }
     }
-    for section in sections
-        .iter()
-        .filter(|room| room.get_ref().footprint.is_some())
-    {
+    for section in sections.iter().filter(|room| room.get_ref().footprint.is_some()) {
         drafts.extend(footprint_draft(section.get_ref(), palette, context));
     }
     drafts
@@ -90,19 +80,17 @@ pub fn add_room(
         };
         rsmf = factor(&mf.rsmf, "rsmf").unwrap_or(1.0);
     }
-    let reflectances = [
-        (&shell.ceiling, 0.7, "ceiling"),
-        (&shell.walls, 0.5, "walls"),
-        (&shell.floor, 0.2, "floor"),
-    ]
-    .map(|(surfaces, usual, part)| {
-        mean_of(draft, surfaces).unwrap_or_else(|| {
-            context.note(format!(
+    let reflectances =
+        [(&shell.ceiling, 0.7, "ceiling"), (&shell.walls, 0.5, "walls"), (&shell.floor, 0.2, "floor")].map(
+            |(surfaces, usual, part)| {
+                mean_of(draft, surfaces).unwrap_or_else(|| {
+                    context.note(format!(
                 "room \"{name}\": no {part} with a reflectance was recognised; the UGR table takes {usual}"
             ));
-            usual
-        })
-    });
+                    usual
+                })
+            },
+        );
     let indices = |part: &[(u32, f64)]| part.iter().map(|(surface, _)| *surface).collect();
     draft.rooms.push(Room {
         name: name.to_owned(),
@@ -125,10 +113,7 @@ pub fn add_room(
 pub fn check_factor(value: &At<f64>, name: &str, context: &mut Context) -> bool {
     let ok = *value.get_ref() > 0.0 && *value.get_ref() <= 1.0;
     if !ok {
-        let message = format!(
-            "{name} must be greater than 0 and at most 1, found {}",
-            value.get_ref()
-        );
+        let message = format!("{name} must be greater than 0 and at most 1, found {}", value.get_ref());
         context.error(&value.span(), message, "");
     }
     ok
@@ -149,20 +134,9 @@ fn mean_of(draft: &Draft, part: &[(u32, f64)]) -> Option<f64> {
 
 fn check_names(sections: &[At<RoomSection>], context: &mut Context) {
     for (index, section) in sections.iter().enumerate() {
-        let RoomSection {
-            name,
-            footprint,
-            node,
-            height,
-            floor,
-            reflectances,
-            ..
-        } = section.get_ref();
+        let RoomSection { name, footprint, node, height, floor, reflectances, .. } = section.get_ref();
         let earlier = &sections[..index];
-        if earlier
-            .iter()
-            .any(|other| other.get_ref().name.get_ref() == name.get_ref())
-        {
+        if earlier.iter().any(|other| other.get_ref().name.get_ref() == name.get_ref()) {
             let message = format!("a second room \"{}\"", name.get_ref());
             context.error(&name.span(), message, "names of rooms are unique");
         }
@@ -197,19 +171,10 @@ fn box_draft(
     }
     for second in rooms.iter().skip(1) {
         let span = second.get_ref().name.span();
-        context.error(
-            &span,
-            "a box is one room",
-            "give further rooms a `footprint`",
-        );
+        context.error(&span, "a box is one room", "give further rooms a `footprint`");
     }
     let room = rooms.first().map(|room| room.get_ref());
-    let BoxSection {
-        size,
-        floor,
-        walls,
-        ceiling,
-    } = section.get_ref();
+    let BoxSection { size, floor, walls, ceiling } = section.get_ref();
     let [x, y, z] = *size.get_ref();
     for edge in size.get_ref() {
         if !context.positive(*edge, &size.span(), "an edge of the box") {
@@ -230,19 +195,11 @@ fn box_draft(
     walled_draft(&boundary, room, name, palette, context)
 }
 
-fn footprint_draft(
-    section: &RoomSection,
-    palette: &mut Palette,
-    context: &mut Context,
-) -> Option<Draft> {
+fn footprint_draft(section: &RoomSection, palette: &mut Palette, context: &mut Context) -> Option<Draft> {
     let footprint = section.footprint.as_ref()?;
     let span = footprint.span();
     let name = section.name.get_ref();
-    let mut outline: Vec<DVec2> = footprint
-        .get_ref()
-        .iter()
-        .map(|p| DVec2::from_array(*p))
-        .collect();
+    let mut outline: Vec<DVec2> = footprint.get_ref().iter().map(|p| DVec2::from_array(*p)).collect();
     if !outline.iter().all(|p| p.is_finite()) {
         context.error(&span, "coordinates must be finite", "");
         return None;
@@ -252,15 +209,9 @@ fn footprint_draft(
         return None;
     }
     if let Some(edge) = polygon::crossing(&outline) {
-        let message = format!(
-            "the footprint of \"{name}\" intersects itself at the edge from corner {}",
-            edge + 1
-        );
-        context.error(
-            &span,
-            message,
-            "list the corners once around the room, without repeating the first",
-        );
+        let message =
+            format!("the footprint of \"{name}\" intersects itself at the edge from corner {}", edge + 1);
+        context.error(&span, message, "list the corners once around the room, without repeating the first");
         return None;
     }
     if polygon::signed_area_m2(&outline) < 0.0 {

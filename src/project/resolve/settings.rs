@@ -21,10 +21,7 @@ const STATISTICS: &[&str] = &["mean", "min", "max", "U0", "Ud", "value"];
 
 /// Head of the report.
 pub fn info(section: &ProjectSection, context: &mut Context) -> Info {
-    let folder = context
-        .folder
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned());
+    let folder = context.folder.file_name().map(|name| name.to_string_lossy().into_owned());
     let mut language = Vec::new();
     for code in section.language.iter().flat_map(At::get_ref) {
         if LANGUAGES.contains(&code.get_ref().as_str()) {
@@ -92,33 +89,18 @@ pub fn norm(file: &File, context: &mut Context) -> Option<Norm> {
             return None;
         }
     };
-    let compare = section
-        .compare
-        .unwrap_or(match standard.application.comparison {
-            norm::Comparison::Exact => Compare::Exact,
-            norm::Comparison::Printed => Compare::Printed,
-        });
-    Some(Norm {
-        standard,
-        row: section.row.as_ref().map(|row| row.get_ref().clone()),
-        compare,
-    })
+    let compare = section.compare.unwrap_or(match standard.application.comparison {
+        norm::Comparison::Exact => Compare::Exact,
+        norm::Comparison::Printed => Compare::Printed,
+    });
+    Some(Norm { standard, row: section.row.as_ref().map(|row| row.get_ref().clone()), compare })
 }
 
 /// Every row that is named anywhere must exist.
 pub fn check_rows(file: &File, norm: Option<&Norm>, context: &mut Context) {
-    let of_norm = file
-        .norm
-        .iter()
-        .filter_map(|norm| norm.get_ref().row.as_ref());
-    let of_rooms = file
-        .rooms
-        .iter()
-        .filter_map(|room| room.get_ref().row.as_ref());
-    let of_areas = file
-        .areas
-        .iter()
-        .filter_map(|area| area.get_ref().row.as_ref());
+    let of_norm = file.norm.iter().filter_map(|norm| norm.get_ref().row.as_ref());
+    let of_rooms = file.rooms.iter().filter_map(|room| room.get_ref().row.as_ref());
+    let of_areas = file.areas.iter().filter_map(|area| area.get_ref().row.as_ref());
     for row in of_norm.chain(of_rooms).chain(of_areas) {
         match norm {
             // A norm that could not be read was reported already.
@@ -141,10 +123,7 @@ pub fn check_rows(file: &File, norm: Option<&Norm>, context: &mut Context) {
 /// Light scenes; emitting materials are groups too, by their names.
 pub fn light_scenes(file: &File, drafts: &[Draft], context: &mut Context) -> Vec<LightScene> {
     if !file.has_light_scenes {
-        return vec![LightScene {
-            name: "all".to_owned(),
-            factors: None,
-        }];
+        return vec![LightScene { name: "all".to_owned(), factors: None }];
     }
     let luminaires = drafts.iter().flat_map(|draft| &draft.luminaires);
     let materials = drafts.iter().flat_map(|draft| &draft.materials);
@@ -169,10 +148,7 @@ pub fn light_scenes(file: &File, drafts: &[Draft], context: &mut Context) -> Vec
             context.in_range(factor, 0.0, f64::INFINITY, "a factor");
             checked.push((group.get_ref().clone(), *factor.get_ref()));
         }
-        scenes.push(LightScene {
-            name: name.get_ref().clone(),
-            factors: Some(checked),
-        });
+        scenes.push(LightScene { name: name.get_ref().clone(), factors: Some(checked) });
     }
     if scenes.is_empty() {
         let hint = "leave the section out for one scene with everything on";
@@ -182,12 +158,7 @@ pub fn light_scenes(file: &File, drafts: &[Draft], context: &mut Context) -> Vec
 }
 
 /// `[[require]]` → requirements of the worlds they concern.
-pub fn requirements(
-    file: &File,
-    drafts: &mut [Draft],
-    light_scenes: &[LightScene],
-    context: &mut Context,
-) {
+pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], context: &mut Context) {
     for section in &file.requirements {
         let span = section.span();
         let section = section.get_ref();
@@ -245,8 +216,8 @@ fn subject(
 ) -> Option<(usize, CustomSubject)> {
     let (what, name, known, found) = match (&section.room, &section.area, &section.viewpoint) {
         (Some(name), None, None) => {
-            let found = room_named(drafts, name.get_ref())
-                .map(|(world, index)| (world, CustomSubject::Room(index)));
+            let found =
+                room_named(drafts, name.get_ref()).map(|(world, index)| (world, CustomSubject::Room(index)));
             ("room", name, room_names(drafts), found)
         }
         (None, Some(name), None) => {
@@ -274,25 +245,15 @@ fn subject(
     // What was written but has a mistake of its own is not unknown.
     let areas = file.areas.iter().map(|area| &area.get_ref().name);
     let views = file.viewpoints.iter().map(|view| &view.get_ref().name);
-    let written = areas
-        .chain(views)
-        .any(|known| known.get_ref() == name.get_ref());
+    let written = areas.chain(views).any(|known| known.get_ref() == name.get_ref());
     if found.is_none() && !written && !drafts.is_empty() {
         let hint = suggestion(name.get_ref(), known);
-        context.error(
-            &name.span(),
-            format!("no {what} \"{}\"", name.get_ref()),
-            &hint,
-        );
+        context.error(&name.span(), format!("no {what} \"{}\"", name.get_ref()), &hint);
     }
     found
 }
 
-fn find(
-    drafts: &[Draft],
-    name: &str,
-    list: &dyn Fn(&Draft) -> Vec<String>,
-) -> Option<(usize, usize)> {
+fn find(drafts: &[Draft], name: &str, list: &dyn Fn(&Draft) -> Vec<String>) -> Option<(usize, usize)> {
     drafts.iter().enumerate().find_map(|(world, draft)| {
         let index = list(draft).iter().position(|known| known == name)?;
         Some((world, index))
@@ -304,11 +265,7 @@ pub fn declared(file: &File, drafts: &[Draft], context: &mut Context) -> Vec<Dec
     let mut declared = Vec::new();
     for (name, section) in &file.declared {
         let section = section.get_ref();
-        let mut known: Vec<&str> = file
-            .luminaires
-            .iter()
-            .map(|(n, _)| n.get_ref().as_str())
-            .collect();
+        let mut known: Vec<&str> = file.luminaires.iter().map(|(n, _)| n.get_ref().as_str()).collect();
         known.extend(room_names(drafts));
         if !known.contains(&name.get_ref().as_str()) && !drafts.is_empty() {
             let hint = suggestion(name.get_ref(), known);
@@ -317,26 +274,16 @@ pub fn declared(file: &File, drafts: &[Draft], context: &mut Context) -> Vec<Dec
         }
         let mut number = |value: Option<&At<f64>>, high: f64, what: &str| {
             let value = value?;
-            context
-                .in_range(value, 0.0, high, what)
-                .then_some(*value.get_ref())
+            context.in_range(value, 0.0, high, what).then_some(*value.get_ref())
         };
         let flicker = section.flicker.as_ref();
         declared.push(Declared {
             subject: name.get_ref().clone(),
             ra: number(section.ra.as_ref(), 100.0, "ra"),
             cct_k: number(section.cct.as_ref(), 100_000.0, "cct"),
-            pst_lm: number(
-                flicker.and_then(|f| f.pst_lm.as_ref()),
-                f64::INFINITY,
-                "pst_lm",
-            ),
+            pst_lm: number(flicker.and_then(|f| f.pst_lm.as_ref()), f64::INFINITY, "pst_lm"),
             svm: number(flicker.and_then(|f| f.svm.as_ref()), f64::INFINITY, "svm"),
-            pulsation_percent: number(
-                flicker.and_then(|f| f.pulsation.as_ref()),
-                100.0,
-                "pulsation",
-            ),
+            pulsation_percent: number(flicker.and_then(|f| f.pulsation.as_ref()), 100.0, "pulsation"),
         });
     }
     declared
@@ -346,11 +293,7 @@ pub fn declared(file: &File, drafts: &[Draft], context: &mut Context) -> Vec<Dec
 pub fn accuracy(file: &File, context: &mut Context) -> Accuracy {
     let section = &file.accuracy;
     let judged = file.norm.is_some() || !file.requirements.is_empty();
-    let goal = match section
-        .goal
-        .as_ref()
-        .map(|goal| (goal.get_ref(), goal.span()))
-    {
+    let goal = match section.goal.as_ref().map(|goal| (goal.get_ref(), goal.span())) {
         None if judged => Goal::Verdict,
         None => Goal::Relative(0.005),
         Some((GoalChoice::Verdict, span)) => {
@@ -377,9 +320,5 @@ pub fn accuracy(file: &File, context: &mut Context) -> Accuracy {
         }
         value
     });
-    Accuracy {
-        goal,
-        confidence,
-        seed: section.seed.unwrap_or(1),
-    }
+    Accuracy { goal, confidence, seed: section.seed.unwrap_or(1) }
 }

@@ -40,19 +40,12 @@ pub struct Shell {
 
 /// `Wall_S`, `Wall_E`, `Wall_N`, `Wall_W` of an axis-aligned rectangle (N = +y), else `Wall_1` ….
 pub fn wall_names(outline: &[DVec2]) -> Vec<String> {
-    let along: Vec<DVec2> = polygon::edges(outline)
-        .map(|(a, b)| (b - a).normalize())
-        .collect();
+    let along: Vec<DVec2> = polygon::edges(outline).map(|(a, b)| (b - a).normalize()).collect();
     let compass = |direction: &DVec2| {
-        [
-            (DVec2::X, "Wall_S"),
-            (DVec2::Y, "Wall_E"),
-            (DVec2::NEG_X, "Wall_N"),
-            (DVec2::NEG_Y, "Wall_W"),
-        ]
-        .into_iter()
-        .find(|(axis, _)| direction.dot(*axis) > 1.0 - 1e-9)
-        .map(|(_, name)| name.to_owned())
+        [(DVec2::X, "Wall_S"), (DVec2::Y, "Wall_E"), (DVec2::NEG_X, "Wall_N"), (DVec2::NEG_Y, "Wall_W")]
+            .into_iter()
+            .find(|(axis, _)| direction.dot(*axis) > 1.0 - 1e-9)
+            .map(|(_, name)| name.to_owned())
     };
     if along.len() == 4
         && let Some(names) = along.iter().map(compass).collect::<Option<Vec<_>>>()
@@ -67,20 +60,15 @@ pub fn build(mesh: &mut Mesh, plan: &Plan) -> Option<Shell> {
     let triangles = polygon::triangulate(plan.outline)?;
     let mut shell = Shell::default();
     let top_m = plan.floor_m + plan.height_m;
-    for (z, (name, material), upward, list) in [
-        (plan.floor_m, plan.floor, true, &mut shell.floor),
-        (top_m, plan.ceiling, false, &mut shell.ceiling),
-    ] {
+    for (z, (name, material), upward, list) in
+        [(plan.floor_m, plan.floor, true, &mut shell.floor), (top_m, plan.ceiling, false, &mut shell.ceiling)]
+    {
         let surface = mesh.add_surface(name, material, false);
         let first = mesh.positions.len() as u32;
-        mesh.positions
-            .extend(plan.outline.iter().map(|p| p.extend(z)));
+        mesh.positions.extend(plan.outline.iter().map(|p| p.extend(z)));
         for &[a, b, c] in &triangles {
             let corners = if upward { [a, b, c] } else { [a, c, b] };
-            mesh.triangles.push(Triangle {
-                vertices: corners.map(|v| first + v),
-                surface,
-            });
+            mesh.triangles.push(Triangle { vertices: corners.map(|v| first + v), surface });
         }
         list.push((surface, 0.0));
     }
@@ -105,13 +93,7 @@ pub fn build(mesh: &mut Mesh, plan: &Plan) -> Option<Shell> {
         for hole in holes {
             let surface = mesh.add_surface(hole.name.clone(), hole.material, false);
             shell.walls.push((surface, 0.0));
-            add_cell(
-                mesh,
-                axes,
-                hole.from.to_array(),
-                hole.to.to_array(),
-                surface,
-            );
+            add_cell(mesh, axes, hole.from.to_array(), hole.to.to_array(), surface);
         }
     }
     let areas = mesh.surface_areas_m2();
@@ -124,28 +106,15 @@ pub fn build(mesh: &mut Mesh, plan: &Plan) -> Option<Shell> {
 }
 
 /// A rectangle of a wall that starts at `origin`; seen from the room the wall's direction runs leftwards.
-fn add_cell(
-    mesh: &mut Mesh,
-    (origin, along): (DVec3, DVec2),
-    from: [f64; 2],
-    to: [f64; 2],
-    surface: u32,
-) {
+fn add_cell(mesh: &mut Mesh, (origin, along): (DVec3, DVec2), from: [f64; 2], to: [f64; 2], surface: u32) {
     let at = |s: f64, z: f64| origin + (along * s).extend(z);
-    let corners = [
-        at(from[0], from[1]),
-        at(from[0], to[1]),
-        at(to[0], to[1]),
-        at(to[0], from[1]),
-    ];
+    let corners = [at(from[0], from[1]), at(from[0], to[1]), at(to[0], to[1]), at(to[0], from[1])];
     mesh.add_quad(corners, surface);
 }
 
 fn cuts(length: f64, inner: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut cuts: Vec<f64> = inner
-        .filter(|at| *at > 1e-9 && *at < length - 1e-9)
-        .chain([0.0, length])
-        .collect();
+    let mut cuts: Vec<f64> =
+        inner.filter(|at| *at > 1e-9 && *at < length - 1e-9).chain([0.0, length]).collect();
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     cuts

@@ -44,10 +44,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         };
         insert(viewpoint, drafts, context, &mut report);
     }
-    let list = file
-        .lists
-        .as_ref()
-        .and_then(|lists| lists.get_ref().viewpoints.as_ref());
+    let list = file.lists.as_ref().and_then(|lists| lists.get_ref().viewpoints.as_ref());
     let columns = &["name", "x", "y", "z", "azimuth", "tilt"];
     if let Some(table) = list.and_then(|path| Table::read(path, columns, 5, context)) {
         for row in &table.rows {
@@ -97,14 +94,10 @@ fn insert(
             drafts[world].viewpoints.push(viewpoint);
         }
         Located::Outside if drafts.is_empty() => {}
-        Located::Outside => report(
-            context,
-            format!("viewpoint \"{name}\" lies outside of every room"),
-        ),
-        Located::Ambiguous(rooms) => report(
-            context,
-            format!("viewpoint \"{name}\" lies in more than one room: {rooms}"),
-        ),
+        Located::Outside => report(context, format!("viewpoint \"{name}\" lies outside of every room")),
+        Located::Ambiguous(rooms) => {
+            report(context, format!("viewpoint \"{name}\" lies in more than one room: {rooms}"))
+        }
     }
 }
 
@@ -158,11 +151,7 @@ fn directions(
     let steps = ((to - from) / step + 1e-9).floor();
     if !(step > 0.0 && (0.0..MAX_DIRECTIONS).contains(&steps)) {
         let message = format!("a sweep runs upwards in at most {MAX_DIRECTIONS} steps");
-        context.error(
-            &sweep.span(),
-            message,
-            "for example { from = 0, to = 345, step = 15 }",
-        );
+        context.error(&sweep.span(), message, "for example { from = 0, to = 345, step = 15 }");
         return None;
     }
     Some(

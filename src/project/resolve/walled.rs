@@ -44,10 +44,8 @@ pub fn walled_draft(
     };
     let floor = surfaced("Floor", floor);
     let ceiling = surfaced("Ceiling", ceiling);
-    let walls: Vec<(String, usize)> = names
-        .iter()
-        .map(|name| (name.clone(), surfaced(name, walls)))
-        .collect();
+    let walls: Vec<(String, usize)> =
+        names.iter().map(|name| (name.clone(), surfaced(name, walls))).collect();
     let openings = openings(section, boundary, &names, &mut draft, palette, context);
     let plan = Plan {
         outline: &boundary.outline,
@@ -59,18 +57,10 @@ pub fn walled_draft(
         openings: &openings,
     };
     let Some(shell) = shell::build(&mut draft.mesh, &plan) else {
-        context.error(
-            &boundary.span,
-            "the footprint cannot be filled with triangles",
-            "",
-        );
+        context.error(&boundary.span, "the footprint cannot be filled with triangles", "");
         return None;
     };
-    let limits = (
-        boundary.outline.clone(),
-        boundary.floor_m,
-        boundary.height_m,
-    );
+    let limits = (boundary.outline.clone(), boundary.floor_m, boundary.height_m);
     add_room(&mut draft, section, name, limits, &shell, context);
     Some(draft)
 }
@@ -98,13 +88,9 @@ fn surface_material(
     match at.get_ref() {
         Surfacing::Reflectance(value) => {
             let value = toml::Spanned::new(at.span(), *value);
-            context
-                .in_range(&value, 0.0, 1.0, "reflectance")
-                .then(|| lambert(surface, *value.get_ref()))
+            context.in_range(&value, 0.0, 1.0, "reflectance").then(|| lambert(surface, *value.get_ref()))
         }
-        Surfacing::Material(name) => {
-            palette.named(&toml::Spanned::new(at.span(), name.clone()), context)
-        }
+        Surfacing::Material(name) => palette.named(&toml::Spanned::new(at.span(), name.clone()), context),
     }
 }
 
@@ -129,13 +115,10 @@ fn openings(
         let a = boundary.outline[wall];
         let b = boundary.outline[(wall + 1) % boundary.outline.len()];
         let length = (b - a).length();
-        let (mut from, mut to) = (
-            DVec2::from_array(*opening.from.get_ref()),
-            DVec2::from_array(*opening.to.get_ref()),
-        );
+        let (mut from, mut to) =
+            (DVec2::from_array(*opening.from.get_ref()), DVec2::from_array(*opening.to.get_ref()));
         let limit = DVec2::new(length, boundary.height_m) + 1e-9;
-        if !(from.cmpge(DVec2::splat(-1e-9)).all() && from.cmplt(to).all() && to.cmple(limit).all())
-        {
+        if !(from.cmpge(DVec2::splat(-1e-9)).all() && from.cmplt(to).all() && to.cmple(limit).all()) {
             let message = format!(
                 "the opening must lie within the wall of {length} m × {} m, `from` below and before `to`",
                 boundary.height_m
@@ -147,9 +130,8 @@ fn openings(
         if matches!(names[wall].as_str(), "Wall_N" | "Wall_W") {
             (from.x, to.x) = (length - to.x, length - from.x);
         }
-        let overlaps = |other: &&Opening| {
-            other.wall == wall && other.from.cmplt(to).all() && from.cmplt(other.to).all()
-        };
+        let overlaps =
+            |other: &&Opening| other.wall == wall && other.from.cmplt(to).all() && from.cmplt(other.to).all();
         if built.iter().any(|other| overlaps(&other)) {
             context.error(&opening.from.span(), "the opening overlaps another one", "");
             continue;

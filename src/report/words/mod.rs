@@ -151,10 +151,7 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Quantity::Semicylindrical { .. } => word(lang, Term::IndexSemicylindrical),
         Quantity::Hemispherical => word(lang, Term::IndexHemispherical),
         Quantity::Spherical => word(lang, Term::IndexSpherical),
-        Quantity::Luminance { .. }
-        | Quantity::Modelling
-        | Quantity::Ugr
-        | Quantity::ColourRendering => "",
+        Quantity::Luminance { .. } | Quantity::Modelling | Quantity::Ugr | Quantity::ColourRendering => "",
     };
     let letter = match quantity {
         Quantity::Modelling => word(lang, Term::ModellingShort),
@@ -163,49 +160,26 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Quantity::Luminance { .. } => "L",
         _ => "E",
     };
-    let index = if quantity == Quantity::ColourRendering {
-        "a"
-    } else {
-        index
-    };
+    let index = if quantity == Quantity::ColourRendering { "a" } else { index };
     let rest = direction(quantity).map_or_else(String::new, |at| format!(" {at}"));
     let with = |mark: &str| Symbol {
         letter: letter.to_owned(),
-        index: if index.is_empty() {
-            mark.to_owned()
-        } else {
-            format!("{index},{mark}")
-        },
+        index: if index.is_empty() { mark.to_owned() } else { format!("{index},{mark}") },
         rest: rest.clone(),
     };
     let ratio = |letter: &str, sub: &str| {
-        let plain = Symbol {
-            letter: self::letter(quantity, lang),
-            index: index.to_owned(),
-            rest: rest.clone(),
-        };
-        Symbol {
-            letter: letter.to_owned(),
-            index: sub.to_owned(),
-            rest: format!(" ({})", plain.text()),
-        }
+        let plain =
+            Symbol { letter: self::letter(quantity, lang), index: index.to_owned(), rest: rest.clone() };
+        Symbol { letter: letter.to_owned(), index: sub.to_owned(), rest: format!(" ({})", plain.text()) }
     };
     match statistic {
-        Statistic::Mean if letter == "E" => Symbol {
-            letter: "Ē".into(),
-            index: index.into(),
-            rest,
-        },
+        Statistic::Mean if letter == "E" => Symbol { letter: "Ē".into(), index: index.into(), rest },
         Statistic::Mean => with(word(lang, Term::IndexMean)),
         Statistic::Min => with(word(lang, Term::IndexMin)),
         Statistic::Max => with(word(lang, Term::IndexMax)),
         Statistic::U0 => ratio("U", "0"),
         Statistic::Ud => ratio(word(lang, Term::MinByMax), ""),
-        Statistic::Value => Symbol {
-            letter: letter.into(),
-            index: index.into(),
-            rest,
-        },
+        Statistic::Value => Symbol { letter: letter.into(), index: index.into(), rest },
     }
 }
 
@@ -225,10 +199,7 @@ fn direction(quantity: Quantity) -> Option<String> {
         Quantity::Vertical { azimuth_deg } | Quantity::Semicylindrical { azimuth_deg } => {
             Some(format!("@{azimuth_deg}°"))
         }
-        Quantity::Luminance {
-            azimuth_deg,
-            tilt_deg,
-        } => Some(format!("@{azimuth_deg}°, {tilt_deg}°")),
+        Quantity::Luminance { azimuth_deg, tilt_deg } => Some(format!("@{azimuth_deg}°, {tilt_deg}°")),
         Quantity::Horizontal
         | Quantity::Normal
         | Quantity::Cylindrical
@@ -274,15 +245,8 @@ mod tests {
     fn no_term_is_missing_in_either_language() {
         for (index, (term, english, russian)) in TERMS.iter().enumerate() {
             assert_eq!(index, *term as usize, "{term:?} stands in the wrong place");
-            assert!(
-                !english.trim().is_empty() && !russian.trim().is_empty(),
-                "{term:?}"
-            );
-            assert_eq!(
-                english == russian,
-                SAME.contains(term),
-                "{term:?}: {russian}"
-            );
+            assert!(!english.trim().is_empty() && !russian.trim().is_empty(), "{term:?}");
+            assert_eq!(english == russian, SAME.contains(term), "{term:?}: {russian}");
             assert_eq!(
                 english.matches("{}").count(),
                 russian.matches("{}").count(),
@@ -291,35 +255,23 @@ mod tests {
             let cyrillic = russian
                 .chars()
                 .any(|c| ('а'..='я').contains(&c.to_ascii_lowercase()) || ('А'..='я').contains(&c));
-            assert!(
-                cyrillic || SAME.contains(term),
-                "{term:?} is not Russian: {russian}"
-            );
+            assert!(cyrillic || SAME.contains(term), "{term:?} is not Russian: {russian}");
         }
     }
 
     #[test]
     fn phrases_take_their_parts_in_order() {
-        assert_eq!(
-            phrase(Lang::En, Term::PassedOf, &["2", "14"]),
-            "2 of 14 requirements pass"
-        );
+        assert_eq!(phrase(Lang::En, Term::PassedOf, &["2", "14"]), "2 of 14 requirements pass");
     }
 
     #[test]
     fn symbols_carry_quantity_and_statistic() {
         let text = |q, s| symbol(Lang::En, q, s).text();
         assert_eq!(text(Quantity::Horizontal, Statistic::Mean), "Ē_h");
-        assert_eq!(
-            text(Quantity::Vertical { azimuth_deg: 90.0 }, Statistic::Min),
-            "E_v,min @90°"
-        );
+        assert_eq!(text(Quantity::Vertical { azimuth_deg: 90.0 }, Statistic::Min), "E_v,min @90°");
         assert_eq!(text(Quantity::Cylindrical, Statistic::U0), "U_0 (E_z)");
         assert_eq!(text(Quantity::Ugr, Statistic::Value), "UGR");
         assert_eq!(text(Quantity::ColourRendering, Statistic::Value), "R_a");
-        assert_eq!(
-            symbol(Lang::Ru, Quantity::Horizontal, Statistic::Min).text(),
-            "E_г,мин"
-        );
+        assert_eq!(symbol(Lang::Ru, Quantity::Horizontal, Statistic::Min).text(), "E_г,мин");
     }
 }

@@ -1,0 +1,269 @@
+//! The command line: flags, their help and examples, resolved into settings of the library.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use gershun::Settings;
+use gershun::project::{Goal, Project};
+use gershun::report::Lang;
+use gershun::solve::Method;
+
+/// Lighting quality from spatial-angular luminance: illuminance, flux and glare with intervals,
+/// judged against norms.
+#[derive(Parser, Debug)]
+#[command(name = "gershun", version, about, after_help = EXIT_CODES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes:
+  0    complies (or nothing was required, which is said)
+  1    some requirement certainly fails
+  3    some requirement is undecided or undefined, none fails
+  2    bad input, usage or input/output
+  130  interrupted; what was done is kept";
+
+/// Commands.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Solve as far as the verdicts need, print the table, write the report
+    #[command(after_help = "Examples:
+  gershun check scenes/office
+  gershun check --accuracy fine --lang ru --out result scenes/office
+  gershun check --format json scenes/box > box.json
+  gershun check --blocks 256 --seed 7 scenes/box      # the same bytes every time")]
+    Check(Check),
+    /// Start a new project from a small commented example
+    #[command(after_help = "Example:
+  gershun new my-office && gershun check my-office")]
+    New {
+        /// Folder to make; it must not exist
+        dir: PathBuf,
+    },
+    /// Print the JSON Schema of result.json
+    Schema,
+    /// The norms that gershun knows
+    #[command(subcommand)]
+    Norm(Norm),
+}
+
+/// Norm commands.
+#[derive(Subcommand, Debug)]
+pub enum Norm {
+    /// List the bundled norms
+    List,
+    /// Show the rows of a norm, or one row
+    #[command(after_help = "Examples:
+  gershun norm show en-12464-1-2021
+  gershun norm show en-12464-1-2021 34.2")]
+    Show {
+        /// Name of a bundled norm, or a file
+        name: String,
+        /// Row
+        row: Option<String>,
+    },
+}
+
+/// Arguments of `check`.
+#[derive(Args, Debug)]
+pub struct Check {
+    /// project.toml files or their folders
+    #[arg(required = true, value_name = "PROJECT")]
+    pub projects: Vec<PathBuf>,
+    /// Folder for the report [default: out/<project name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of all randomness [default: the project's, else 1]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Number of threads; it never changes a result [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// How far to go at most: 64, 1024 or 16384 blocks; relative goal 2.5, 0.5 or 0.15 %
+    #[arg(long, value_enum, default_value_t = Accuracy::Normal)]
+    pub accuracy: Accuracy,
+    /// Go on until the relative standard error is reached, e.g. 0.01
+    #[arg(long, value_name = "R", value_parser = fraction)]
+    pub relative: Option<f64>,
+    /// Stop after this time at a block's end, e.g. 30s, 2m
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub time: Option<Duration>,
+    /// Compute exactly this many blocks (at least 2)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub blocks: Option<u32>,
+    /// Estimator
+    #[arg(long, value_enum, default_value_t = MethodChoice::Auto)]
+    pub method: MethodChoice,
+    /// Print what would be computed and why, then stop
+    #[arg(long)]
+    pub explain_plan: bool,
+    /// Memory for the answers, e.g. 4GiB
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = size)]
+    pub memory: usize,
+    /// What is printed on standard output
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Language of the table and the report [default: the project's]
+    #[arg(long, value_enum)]
+    pub lang: Option<LangChoice>,
+    /// CSV files for Excel: semicolons and decimal commas
+    #[arg(long)]
+    pub csv_excel: bool,
+    /// Let the project read files outside its folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print biases and the plan's reasons too
+    #[arg(short, long)]
+    pub verbose: bool,
+    /// Colour in the terminal
+    #[arg(long, value_enum, default_value_t = ColourChoice::Auto)]
+    pub color: ColourChoice,
+}
+
+/// Accuracy presets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Accuracy {
+    /// 2.5 %, at most 64 blocks
+    Draft,
+    /// 0.5 %, at most 1024 blocks
+    Normal,
+    /// 0.15 %, at most 16384 blocks
+    Fine,
+}
+
+/// Estimators on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MethodChoice {
+    /// The fastest unbiased one: links
+    Auto,
+    /// Frozen field, gather rays, residual walks
+    Links,
+    /// Independent path tracing, for cross-checks
+    Path,
+}
+
+/// Output formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table
+    Human,
+    /// result.json
+    Json,
+    /// JUnit XML, for build servers
+    Junit,
+    /// SARIF, for code scanners
+    Sarif,
+}
+
+/// Languages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LangChoice {
+    /// English
+    En,
+    /// Russian
+    Ru,
+}
+
+/// Use of colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ColourChoice {
+    /// In a terminal, unless NO_COLOR is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+impl LangChoice {
+    /// The report's language.
+    pub fn lang(self) -> Lang {
+        match self {
+            Self::En => Lang::En,
+            Self::Ru => Lang::Ru,
+        }
+    }
+}
+
+impl Check {
+    /// Settings of the run; the command line beats the project file.
+    pub fn settings(&self, project: &mut Project) -> Settings {
+        let (relative, most_blocks) = match self.accuracy {
+            Accuracy::Draft => (0.025, 64),
+            Accuracy::Normal => (0.005, 1024),
+            Accuracy::Fine => (0.0015, 16_384),
+        };
+        if let Some(seed) = self.seed {
+            project.accuracy.seed = seed;
+        }
+        if let Some(relative) = self.relative {
+            project.accuracy.goal = Goal::Relative(relative);
+        }
+        let file_time = match project.accuracy.goal {
+            Goal::Seconds(seconds) => Some(seconds),
+            Goal::Verdict | Goal::Relative(_) => None,
+        };
+        Settings {
+            method: match self.method {
+                MethodChoice::Auto | MethodChoice::Links => Method::Links,
+                MethodChoice::Path => Method::Path,
+            },
+            most_blocks,
+            exact_blocks: self.blocks.map(|n| n as usize),
+            seconds: self.time.map(|time| time.as_secs_f64()).or(file_time),
+            relative,
+            memory_bytes: self.memory,
+            ..Settings::default()
+        }
+    }
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
+    if value > 0.0 && value < 1.0 {
+        Ok(value)
+    } else {
+        Err("a relative error lies between 0 and 1, e.g. 0.01".into())
+    }
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(split);
+    let number: f64 =
+        number.trim().parse().map_err(|_| format!("\"{text}\" is not a time; write 30s, 2m or 1h"))?;
+    let factor = match unit {
+        "ms" => 1e-3,
+        "" | "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(format!("unknown unit \"{unit}\"; write 30s, 2m or 1h")),
+    };
+    Duration::try_from_secs_f64(number * factor)
+        .map_err(|_| format!("\"{text}\" is not a time that can be waited for"))
+}
+
+fn size(text: &str) -> Result<usize, String> {
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(split);
+    let number: f64 =
+        number.trim().parse().map_err(|_| format!("\"{text}\" is not a size; write 500MiB or 4GiB"))?;
+    let factor = match unit {
+        "" | "B" => 1.0,
+        "KiB" | "K" => 1024.0,
+        "MiB" | "M" => 1024.0 * 1024.0,
+        "GiB" | "G" => 1024.0 * 1024.0 * 1024.0,
+        _ => return Err(format!("unknown unit \"{unit}\"; write 500MiB or 4GiB")),
+    };
+    if number > 0.0 && number.is_finite() {
+        Ok((number * factor) as usize)
+    } else {
+        Err("a size is positive".into())
+    }
+}

@@ -1,6 +1,8 @@
 //! Efficiency of the links method against the effort of a block: CPU seconds and the standard error
 //! per point that they buy, on a furnished room. `cargo run --release --example effort`
 
+#![allow(clippy::print_stdout, reason = "a study prints")]
+
 #[path = "../tests/common/mod.rs"]
 mod common;
 

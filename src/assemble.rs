@@ -116,16 +116,12 @@ impl Context<'_> {
             Subject::ColourRendering => {
                 let declared = entry.luminaires.iter().map(|&l| self.declared_ra(entry, l));
                 let least = declared.collect::<Option<Vec<f64>>>().filter(|all| !all.is_empty());
-                match least {
-                    Some(all) => {
-                        let least = all.into_iter().fold(f64::INFINITY, f64::min);
-                        (Gauged::exact(least), "declared, not computed".into(), Some(Verdict::Declared))
-                    }
-                    None => {
-                        let reason =
-                            Undefined::because("not declared for every luminaire type ([declared] ra)");
-                        (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
-                    }
+                if let Some(all) = least {
+                    let least = all.into_iter().fold(f64::INFINITY, f64::min);
+                    (Gauged::exact(least), "declared, not computed".into(), Some(Verdict::Declared))
+                } else {
+                    let reason = Undefined::because("not declared for every luminaire type ([declared] ra)");
+                    (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
                 }
             }
             Subject::Missing(reason) => (

@@ -271,7 +271,7 @@ fn list_norms() -> u8 {
     for (id, source) in bundled() {
         match Standard::parse(source, id) {
             Ok(standard) => {
-                text.push_str(&format!("{id}  {} ({} rows)\n", standard.title, standard.rows.len()))
+                text.push_str(&format!("{id}  {} ({} rows)\n", standard.title, standard.rows.len()));
             }
             Err(error) => return complain(&error.to_string()),
         }

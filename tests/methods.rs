@@ -82,7 +82,7 @@ fn differences(links: &Scene, path: &Scene, seed: u64) -> (Vec<f64>, f64) {
         }
     }
     // The path tracer's error dominates: about blocks − 1 degrees of freedom.
-    let null = StudentsT::new(0.0, 1.0, (blocks - 1) as f64).unwrap();
+    let null = StudentsT::new(0.0, 1.0, (blocks - 1) as f64).expect("positive degrees of freedom");
     t.sort_by(f64::total_cmp);
     let n = t.len() as f64;
     let distance = t.iter().enumerate().fold(0f64, |d, (i, &x)| {

@@ -34,7 +34,7 @@ fn compare(
 
 fn box_room(size: DVec3, rho: [f64; 3], lamp: DVec3, flux: f64) -> Scene {
     let materials = vec![lambert("floor", rho[0]), lambert("walls", rho[1]), lambert("ceiling", rho[2])];
-    Scene::new(room(size), materials, vec![point_lamp(flux, lamp)]).unwrap()
+    Scene::new(room(size), materials, vec![point_lamp(flux, lamp)]).expect("the scene is valid")
 }
 
 #[test]
@@ -133,8 +133,8 @@ fn scene_a_matches_the_peers() {
     let receivers = rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect();
     let demand = Demand { receivers, rays: vec![], flux: false };
     let truth: Vec<(f64, f64)> = rows.iter().map(|r| (r[3], r[4])).collect();
-    for (gather, walks, blocks) in [(16, 4, 64), (16, 8, 64), (32, 8, 64), (32, 16, 32)] {
-        let effort = Effort { gather, walks, ..Effort::default() };
+    for blocks in [64] {
+        let effort = Effort::default();
         let before = common::cpu_seconds();
         let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Links, effort, blocks);
         println!(
@@ -153,39 +153,4 @@ fn scene_a_matches_the_peers() {
         100.0 * worst,
         common::cpu_seconds() - before
     );
-}
-
-#[test]
-fn debug_scene_a() {
-    let Some(data) = data() else { return };
-    let text = std::fs::read_to_string(data.join("peers/A_wp_reference.csv")).unwrap();
-    let rows: Vec<Vec<f64>> =
-        text.lines().skip(1).map(|line| line.split(',').map(|f| f.parse().unwrap()).collect()).collect();
-    let mut mesh = room(DVec3::new(8.0, 5.0, 2.8));
-    let mut lamps = Vec::new();
-    let plate = mesh.add_surface("plates", 3, true);
-    for x in [4.0 / 3.0, 4.0, 20.0 / 3.0] {
-        for y in [1.25, 3.75] {
-            let c = DVec3::new(x, y, 2.799);
-            let at = |u: f64, v: f64| c + DVec3::new(0.3 * u, 0.3 * v, 0.0);
-            mesh.add_quad([at(-1., -1.), at(-1., 1.), at(1., 1.), at(1., -1.)], plate);
-            lamps.push(panel(3600.0, 0.6, c));
-        }
-    }
-    let materials =
-        vec![lambert("floor", 0.2), lambert("wall", 0.5), lambert("ceiling", 0.7), lambert("black", 0.0)];
-    let scene = Scene::new(mesh, materials, lamps).unwrap();
-    let demand = Demand {
-        receivers: rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect(),
-        rays: vec![],
-        flux: false,
-    };
-    for method in [Method::Links, Method::Path] {
-        let s = sheets(&scene, &demand, method, Effort::default(), 1, 64);
-        for i in [0, 1, 5, 20, 77] {
-            let d: f64 = s.iter().map(|x| x.values[3 * i]).sum::<f64>() / 64.0;
-            let n: f64 = s.iter().map(|x| x.values[3 * i + 2]).sum::<f64>() / 64.0;
-            println!("{method:?} {i}: direct {d:.2} ({:.2}) indirect {n:.2} ({:.2})", rows[i][5], rows[i][6]);
-        }
-    }
 }

@@ -27,18 +27,18 @@ pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
         return value([0.5, 0.5]);
     }
     let luminaire = emitters.luminaire(source);
-    if let (Some(flux_lm), Kernel::Planar { normal }) = (luminaire.kind.distribution.lambert_flux(), kernel) {
-        if luminaire.kind.opening.is_polygon() {
-            let corners = luminaire.kind.opening.outline();
-            let beam = -source.world_from_luminaire.z_axis;
-            if beam.dot(point - source.position) <= 0.0 {
-                return 0.0;
-            }
-            let luminance = flux_lm * luminaire.dim / (PI * source.area_m2);
-            let corners: Vec<DVec3> =
-                corners.iter().map(|&p| source.position + source.world_from_luminaire * p - point).collect();
-            return luminance * contour(&corners, *normal);
+    if let (Some(flux_lm), Kernel::Planar { normal }) = (luminaire.kind.distribution.lambert_flux(), kernel)
+        && luminaire.kind.opening.is_polygon()
+    {
+        let corners = luminaire.kind.opening.outline();
+        let beam = -source.world_from_luminaire.z_axis;
+        if beam.dot(point - source.position) <= 0.0 {
+            return 0.0;
         }
+        let luminance = flux_lm * luminaire.dim / (PI * source.area_m2);
+        let corners: Vec<DVec3> =
+            corners.iter().map(|&p| source.position + source.world_from_luminaire * p - point).collect();
+        return luminance * contour(&corners, *normal);
     }
     let whole = product(&GAUSS3, [0.0, 0.0], 1.0, &value);
     // Far from the opening two and three nodes agree at once.

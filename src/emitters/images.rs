@@ -71,7 +71,7 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
                 found[known].1 += area_m2;
             }
             None if found.len() < 4096 => {
-                found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2))
+                found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2));
             }
             None => {}
         }

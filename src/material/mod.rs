@@ -173,10 +173,10 @@ mod tests {
                 let wo = direction(cos_o, 0.4);
                 let (mut energy, mut density) = (0.0, 0.0);
                 for i in 0..2 * n {
-                    let cos_i = (i as f64 + 0.5) / n as f64 - 1.0;
+                    let cos_i = (f64::from(i) + 0.5) / f64::from(n) - 1.0;
                     for j in 0..16 {
-                        let wi = direction(cos_i, PI * (j as f64 + 0.5) / 8.0);
-                        let solid_angle = 2.0 * PI / (n as f64 * 16.0);
+                        let wi = direction(cos_i, PI * (f64::from(j) + 0.5) / 8.0);
+                        let solid_angle = 2.0 * PI / (f64::from(n) * 16.0);
                         energy += bsdf.f(wi, wo) * cos_i.abs() * solid_angle;
                         density += bsdf.pdf(wi, wo) * solid_angle;
                         if cos_i > 0.0 {

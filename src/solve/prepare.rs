@@ -66,7 +66,7 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
     }
     let landing = |u: [f64; 3]| {
         let place = patches.place(&scene.mesh, side, u);
-        let front = side % 2 == 0;
+        let front = side.is_multiple_of(2);
         let normal = if front { place.normal } else { -place.normal };
         Landing { point: place.point, normal, triangle, barycentric: [0.0; 2], front }
     };

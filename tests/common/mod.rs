@@ -162,5 +162,5 @@ pub fn furnished() -> Scene {
     let mut uplight = lamp(IntensityDistribution::isotropic(Lumens(1500.0)), disc, DVec3::new(3.0, 2.0, 2.2));
     uplight.group = "B".into();
     lamps.push(uplight);
-    Scene::new(mesh, materials, lamps).unwrap()
+    Scene::new(mesh, materials, lamps).expect("the scene is valid")
 }

@@ -96,7 +96,7 @@ fn insert(
         Located::Outside if drafts.is_empty() => {}
         Located::Outside => report(context, format!("viewpoint \"{name}\" lies outside of every room")),
         Located::Ambiguous(rooms) => {
-            report(context, format!("viewpoint \"{name}\" lies in more than one room: {rooms}"))
+            report(context, format!("viewpoint \"{name}\" lies in more than one room: {rooms}"));
         }
     }
 }

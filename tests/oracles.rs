@@ -138,7 +138,7 @@ fn scene_a_matches_the_peers() {
         let before = common::cpu_seconds();
         let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Links, effort, blocks);
         println!(
-            "{gather} {walks} {blocks}: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
+            "{blocks} blocks: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
             100.0 * rms,
             100.0 * worst,
             common::cpu_seconds() - before

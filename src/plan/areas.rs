@@ -241,8 +241,9 @@ fn contains(outline: &[DVec2], p: DVec2) -> bool {
     inside
 }
 
-/// Inside a closed solid every ray first meets a back side; several directions guard against open
-/// sheets. On a surface the ones into it are left out: a cabinet sunk into a wall hides its points.
+/// Whether a point lies inside closed furniture: along every direction it leaves more solids than
+/// it enters. Several directions guard against open sheets; on a surface those into it are left
+/// out, so that a cabinet sunk into a wall hides the wall's points.
 fn inside_furniture(scene: &Scene, point: &grid::GridPoint, on_surface: bool) -> bool {
     let at = point.position + if on_surface { point.normal * 1e-4 } else { DVec3::ZERO };
     [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z]
@@ -251,16 +252,25 @@ fn inside_furniture(scene: &Scene, point: &grid::GridPoint, on_surface: bool) ->
         .all(|axis| {
             // Slightly off the axes, so that the rays do not run along faces.
             let direction = (axis + DVec3::new(1.3e-3, 2.7e-3, 3.9e-3)).normalize();
-            let direction = if on_surface && direction.dot(point.normal) < 0.0 {
-                direction - 2.0 * direction.dot(point.normal) * point.normal
-            } else {
-                direction
-            };
-            scene.tracer.closest(at, direction, &[]).is_some_and(|hit| {
-                let surface = scene.tracer.surface(hit.triangle) as usize;
-                !hit.front && scene.mesh.surfaces[surface].furniture
-            })
+            let into = direction.dot(point.normal);
+            let outward = on_surface && into < 0.0;
+            leaves_solid(scene, at, if outward { direction - 2.0 * into * point.normal } else { direction })
         })
+}
+
+/// Counts the furniture faces along a ray: more back sides than front sides means it starts inside.
+fn leaves_solid(scene: &Scene, mut origin: DVec3, direction: DVec3) -> bool {
+    const MOST_FACES: usize = 10_000;
+    let mut inside = 0;
+    for _ in 0..MOST_FACES {
+        let Some(hit) = scene.tracer.closest(origin, direction, &[]) else { break };
+        let surface = scene.tracer.surface(hit.triangle) as usize;
+        if scene.mesh.surfaces[surface].furniture {
+            inside += if hit.front { -1 } else { 1 };
+        }
+        origin += direction * (hit.distance_m + scene.tracer.offset_m());
+    }
+    inside > 0
 }
 
 /// What is measured on an area: what the user listed, what its kind implies, what `[[require]]` needs.

@@ -258,16 +258,17 @@ fn inside_furniture(scene: &Scene, point: &grid::GridPoint, on_surface: bool) ->
         })
 }
 
-/// Counts the furniture faces along a ray: more back sides than front sides means it starts inside.
+/// Counts the furniture faces along a ray up to the room's shell: more back sides than front sides means it starts inside.
 fn leaves_solid(scene: &Scene, mut origin: DVec3, direction: DVec3) -> bool {
     const MOST_FACES: usize = 10_000;
     let mut inside = 0;
     for _ in 0..MOST_FACES {
         let Some(hit) = scene.tracer.closest(origin, direction, &[]) else { break };
         let surface = scene.tracer.surface(hit.triangle) as usize;
-        if scene.mesh.surfaces[surface].furniture {
-            inside += if hit.front { -1 } else { 1 };
+        if !scene.mesh.surfaces[surface].furniture {
+            break;
         }
+        inside += if hit.front { -1 } else { 1 };
         origin += direction * (hit.distance_m + scene.tracer.offset_m());
     }
     inside > 0

@@ -6,7 +6,7 @@ use crate::emitters::{Emitters, Seen};
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
-    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, Value, Verdict,
+    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome, Value, Verdict,
     ViewpointOutcome,
 };
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
@@ -29,10 +29,36 @@ pub struct Context<'a> {
     pub emitters: &'a Emitters<'a>,
     /// What each planned view of each room sees, computed once.
     pub seen: &'a [Vec<Vec<Seen>>],
+    /// For each room, the UGR table method's values for each spacing-to-height ratio asked for.
+    pub tables: &'a [Vec<(f64, Vec<UgrTableOutcome>)>],
     /// Risk of an individual interval.
     pub alpha: f64,
     /// Risk of all requirements of a room at this look.
     pub joint_alpha: f64,
+}
+
+/// The table method's values of every room: the norm's ratio first, then others that are required.
+pub fn ugr_tables(
+    tables: &mut room_ugr::Tables,
+    project: &Project,
+    world: &World,
+    plan: &Plan,
+) -> Vec<Vec<(f64, Vec<UgrTableOutcome>)>> {
+    let usual = project.norm.as_ref().map_or(0.25, |norm| norm.standard.application.ugr_shr.value);
+    let rooms = world.rooms.iter().zip(&plan.rooms);
+    rooms
+        .map(|(room, planned)| {
+            let mut ratios = vec![usual];
+            for requirement in &planned.requirements {
+                if let Subject::UgrTable(shr) = requirement.subject
+                    && !ratios.iter().any(|known| known.to_bits() == shr.to_bits())
+                {
+                    ratios.push(shr);
+                }
+            }
+            ratios.into_iter().map(|shr| (shr, room_ugr::of_room(tables, world, room, shr))).collect()
+        })
+        .collect()
 }
 
 /// The sources seen by every planned view.
@@ -109,7 +135,8 @@ impl Context<'_> {
                 (self.worst_view(room, *viewpoint, planned.light_scene, alpha), view::CONVENTION.into(), None)
             }
             Subject::UgrTable(shr) => {
-                let value = room_ugr::worst(&room_ugr::table(self.world, entry, *shr));
+                let of_ratio = self.tables[room].iter().find(|(ratio, _)| ratio.to_bits() == shr.to_bits());
+                let value = room_ugr::worst(of_ratio.map_or(&[], |(_, table)| table));
                 let note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
                 (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
             }
@@ -204,7 +231,6 @@ impl Context<'_> {
         let viewpoints = self.viewpoints(index, planned, &mut values);
         let scene = &self.world.scene;
         let luminaires = room.luminaires.iter().map(|&l| luminaire(&scene.luminaires[l])).collect();
-        let shr = self.project.norm.as_ref().map_or(0.25, |norm| norm.standard.application.ugr_shr.value);
         let flux = self.flux(room, planned, &mut values);
         let outcome = RoomOutcome {
             name: room.name.clone(),
@@ -220,7 +246,7 @@ impl Context<'_> {
             types: types(self.world, room),
             furniture: furniture(self.world, room),
             flux,
-            ugr_table: room_ugr::table(self.world, room, shr),
+            ugr_table: self.tables[index].first().map_or_else(Vec::new, |(_, table)| table.clone()),
         };
         (outcome, values)
     }

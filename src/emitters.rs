@@ -102,17 +102,42 @@ impl<'s> Emitters<'s> {
 
     /// Light from the point of the opening at `u` (in the unit square) to `point`.
     pub fn arrival(&self, source: &Source, point: DVec3, u: [f64; 2]) -> Arrival {
+        self.arrival_if(source, point, u, |_| true).unwrap_or(Arrival {
+            direction: (source.position - point).normalize_or_zero(),
+            distance_m: source.position.distance(point),
+            normal_lx: 0.0,
+        })
+    }
+
+    /// [`Emitters::arrival`] where the direction of arrival matters (`wanted`), the opening shines
+    /// that way, and an image lies behind its mirror: cheap tests first, photometry last.
+    #[inline]
+    pub fn arrival_if(
+        &self,
+        source: &Source,
+        point: DVec3,
+        u: [f64; 2],
+        wanted: impl FnOnce(DVec3) -> bool,
+    ) -> Option<Arrival> {
         let luminaire = self.luminaire(source);
         let from = source.position + source.world_from_luminaire * luminaire.kind.opening.point(u);
         let towards = from - point;
         let distance_squared = towards.length_squared();
+        // A receiver that touches the opening has no finite point illuminance; it gets none.
+        if !(distance_squared > 0.0) {
+            return None;
+        }
         let distance_m = distance_squared.sqrt();
         let direction = towards / distance_m;
+        if !wanted(direction) {
+            return None;
+        }
+        if let Some(mirror) = source.mirror {
+            self.mirrors[mirror].meet(self.scene, point, direction, distance_m)?;
+        }
         let leaving = source.world_from_luminaire.transpose() * -direction;
         let intensity_cd = luminaire.kind.distribution.intensity_along(leaving) * luminaire.dim;
-        // A receiver that touches the opening has no finite point illuminance; it gets none.
-        let normal_lx = if distance_squared > 0.0 { intensity_cd / distance_squared } else { 0.0 };
-        Arrival { direction, distance_m, normal_lx }
+        (intensity_cd > 0.0).then(|| Arrival { direction, distance_m, normal_lx: intensity_cd / distance_squared })
     }
 
     /// Share of an arrival that reaches `point`: 0 behind anything opaque, pane transmittances,

@@ -159,6 +159,7 @@ struct Total {
     requirements: Vec<Requirement>,
     plan: Vec<String>,
     biases: Vec<outcome::Bias>,
+    tables: measure::room_ugr::Tables,
     counts: Counts,
     blocks: usize,
     stopped: Option<Stop>,
@@ -182,6 +183,7 @@ fn solve_world(
     let seed = project.accuracy.seed;
     let prepared = solve::prepare(&world.scene, &plan.demand, settings.method, settings.effort, seed);
     let seen = seen_by_views(plan, prepared.emitters(), seed);
+    let tables = assemble::ugr_tables(&mut total.tables, project, world, plan);
     let alpha = 1.0 - project.accuracy.confidence;
     let bytes = plan.demand.rows() * world.scene.channels.len() * solve::PARTS * size_of::<f64>();
     let fitting = (settings.memory_bytes / bytes.max(1)).max(settings.least_blocks);
@@ -210,6 +212,7 @@ fn solve_world(
             answers,
             emitters: prepared.emitters(),
             seen: &seen,
+            tables: &tables,
             alpha,
             joint_alpha: judge::look_alpha(alpha, look),
         };

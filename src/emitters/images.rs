@@ -5,9 +5,11 @@ use glam::{DMat3, DVec3};
 
 use crate::scene::Scene;
 
-/// At most this many planes get images; light reflected by others is found by rays that happen to
-/// hit an opening (right, but noisier, and lost for point sources: `solve` lists it).
+/// At most this many planes get images, and only those with this share of the scene's area; light
+/// reflected by others is found by rays that happen to hit an opening (right, but noisier, and lost
+/// for point sources, which is measured and listed).
 const MOST_PLANES: usize = 12;
+const LEAST_SHARE: f64 = 2e-4;
 
 /// Triangles of specular material in one plane.
 #[derive(Clone, Debug)]
@@ -18,6 +20,9 @@ pub struct Mirror {
     pub offset_m: f64,
     /// Triangles in the plane.
     pub triangles: Vec<u32>,
+    /// Centre and radius of a ball around them, m.
+    centre: DVec3,
+    radius_m: f64,
 }
 
 impl Mirror {
@@ -39,6 +44,9 @@ impl Mirror {
             return None;
         }
         let at = origin + direction * distance_m;
+        if (at - self.centre).length_squared() > self.radius_m * self.radius_m {
+            return None;
+        }
         let inside = |triangle: u32| {
             let [a, b, c] = scene.mesh.corners(triangle as usize);
             let side = |p: DVec3, q: DVec3| (q - p).cross(at - p).dot(self.normal);
@@ -71,16 +79,28 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
                 found[known].1 += area_m2;
             }
             None if found.len() < 4096 => {
-                found.push((Mirror { normal, offset_m, triangles: vec![triangle] }, area_m2));
+                found.push((
+                Mirror { normal, offset_m, triangles: vec![triangle], centre: DVec3::ZERO, radius_m: 0.0 },
+                area_m2,
+            ));
             }
             None => {}
         }
     }
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    // Point sources have no opening to be hit: for them every plane counts.
+    let has_points = scene.luminaires.iter().any(|luminaire| !(luminaire.kind.opening.area_m2() > 0.0));
+    let total_m2: f64 = mesh.surface_areas_m2().iter().sum();
+    found.retain(|(_, area_m2)| has_points || *area_m2 >= LEAST_SHARE * total_m2);
     found.truncate(MOST_PLANES);
     let mut imaged = vec![false; mesh.triangles.len()];
     for triangle in found.iter().flat_map(|(mirror, _)| &mirror.triangles) {
         imaged[*triangle as usize] = true;
+    }
+    for (mirror, _) in &mut found {
+        let corners = || mirror.triangles.iter().flat_map(|&t| mesh.corners(t as usize));
+        mirror.centre = corners().sum::<DVec3>() / (3.0 * mirror.triangles.len() as f64);
+        mirror.radius_m = corners().map(|p| p.distance(mirror.centre)).fold(0.0, f64::max) * (1.0 + 1e-9);
     }
     (found.into_iter().map(|(mirror, _)| mirror).collect(), imaged)
 }

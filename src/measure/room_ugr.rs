@@ -1,15 +1,54 @@
 //! A room's UGR by the table method: the value on which norms decide for a new installation.
 
+use std::cell::RefCell;
+
 use glam::DVec2;
 
-use crate::glare::ugr_table::{self, TableInput};
+use crate::glare::ugr_table::{self, TableInput, UgrTable};
 use crate::luminaire::LuminaireType;
 use crate::outcome::UgrTableOutcome;
 use crate::project::{Room, World};
 use crate::units::Undefined;
 
+/// Tables of luminaire types, each computed once for a project whatever the number of rooms.
+#[derive(Debug, Default)]
+pub struct Tables {
+    known: Vec<(String, f64, Result<UgrTable, Undefined>)>,
+}
+
+impl Tables {
+    /// The table of a type, from its name.
+    fn of(&mut self, kind: &LuminaireType, shr: f64) -> Result<&UgrTable, Undefined> {
+        let same = |name: &str, ratio: f64| name == kind.name && ratio.to_bits() == shr.to_bits();
+        if let Some(place) = self.known.iter().position(|(name, ratio, _)| same(name, *ratio)) {
+            return self.known[place].2.as_ref().map_err(Clone::clone);
+        }
+        // The method asks for the same few zones again and again.
+        let zones: RefCell<Vec<(f64, f64, f64)>> = RefCell::default();
+        let zonal_flux_lm = |from: f64, to: f64| {
+            let same = |zone: &(f64, f64, f64)| zone.0.to_bits() == from.to_bits() && zone.1.to_bits() == to.to_bits();
+            if let Some(zone) = zones.borrow().iter().find(|zone| same(zone)) {
+                return zone.2;
+            }
+            let flux = kind.distribution.zonal_flux(from, to).0;
+            zones.borrow_mut().push((from, to, flux));
+            flux
+        };
+        let input = TableInput {
+            intensity_cd: &|direction| kind.distribution.intensity_along(direction),
+            projected_area_m2: &|direction| kind.opening.projected_area_m2(direction),
+            zonal_flux_lm: &zonal_flux_lm,
+            flux_lm: kind.flux_lm,
+        };
+        let table = ugr_table::table(&input, shr);
+        self.known.push((kind.name.clone(), shr, table));
+        let (_, _, table) = self.known.last().expect("just pushed");
+        table.as_ref().map_err(Clone::clone)
+    }
+}
+
 /// Table values of every luminaire type in a room.
-pub fn table(world: &World, room: &Room, shr: f64) -> Vec<UgrTableOutcome> {
+pub fn of_room(tables: &mut Tables, world: &World, room: &Room, shr: f64) -> Vec<UgrTableOutcome> {
     let mut kinds: Vec<&LuminaireType> = Vec::new();
     for &index in &room.luminaires {
         let kind = &*world.scene.luminaires[index].kind;
@@ -17,7 +56,7 @@ pub fn table(world: &World, room: &Room, shr: f64) -> Vec<UgrTableOutcome> {
             kinds.push(kind);
         }
     }
-    kinds.into_iter().map(|kind| of_kind(world, room, kind, shr)).collect()
+    kinds.into_iter().map(|kind| of_kind(tables, world, room, kind, shr)).collect()
 }
 
 /// The worst of all types and directions, on which the norm decides.
@@ -33,7 +72,7 @@ pub fn worst(tables: &[UgrTableOutcome]) -> Result<f64, Undefined> {
     worst.ok_or_else(|| Undefined::because("the room has no luminaire"))
 }
 
-fn of_kind(world: &World, room: &Room, kind: &LuminaireType, shr: f64) -> UgrTableOutcome {
+fn of_kind(tables: &mut Tables, world: &World, room: &Room, kind: &LuminaireType, shr: f64) -> UgrTableOutcome {
     let mut outcome = UgrTableOutcome {
         kind: kind.name.clone(),
         shr,
@@ -41,7 +80,7 @@ fn of_kind(world: &World, room: &Room, kind: &LuminaireType, shr: f64) -> UgrTab
         endwise: Err(Undefined::because("not computed")),
         notes: Vec::new(),
     };
-    match values(world, room, kind, shr, &mut outcome.notes) {
+    match values(tables, world, room, kind, shr, &mut outcome.notes) {
         Ok((crosswise, endwise)) => {
             outcome.crosswise = crosswise;
             outcome.endwise = endwise;
@@ -57,6 +96,7 @@ fn of_kind(world: &World, room: &Room, kind: &LuminaireType, shr: f64) -> UgrTab
 type TableValue = Result<f64, Undefined>;
 
 fn values(
+    tables: &mut Tables,
     world: &World,
     room: &Room,
     kind: &LuminaireType,
@@ -87,18 +127,13 @@ fn values(
             "table method not applicable: luminaires hang at different heights or below the eye",
         ));
     }
-    let input = TableInput {
-        intensity_cd: &|direction| kind.distribution.intensity_along(direction),
-        projected_area_m2: &|direction| kind.opening.projected_area_m2(direction),
-        zonal_flux_lm: &|from, to| kind.distribution.zonal_flux(from, to).0,
-        flux_lm: kind.flux_lm,
-    };
+    let table = tables.of(kind, shr)?;
     // Length axis of the luminaires in plan: along x, along y, or mixed.
     let along =
         |axis: usize| placed.iter().all(|l| l.world_from_luminaire.x_axis.to_array()[axis].abs() > 0.999);
     let reflectances = room.reflectances;
     let mut look = |across: f64, depth: f64| {
-        let found = ugr_table::for_room(&input, shr, across / height_m, depth / height_m, reflectances)?;
+        let found = table.room(across / height_m, depth / height_m, reflectances)?;
         notes.extend(found.notes.iter().cloned());
         Ok::<_, Undefined>(found)
     };

@@ -119,10 +119,8 @@ fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut 
         let samples = if source.area_m2 > 0.0 { points } else { 1 };
         for sample in 0..samples {
             let u = if samples == 1 { rng.uniforms() } else { sequence.point(sample, rng) };
-            let arrival = emitters.arrival(source, origin, u);
-            if !(arrival.normal_lx > 0.0) {
-                continue;
-            }
+            let responds = |direction| receiver.kernels.iter().any(|kernel| kernel.response(direction) > 0.0);
+            let Some(arrival) = emitters.arrival_if(source, origin, u, responds) else { continue };
             let passed = emitters.passed(source, origin, &arrival);
             let lost = if own { passed - 1.0 } else { passed };
             if lost == 0.0 {

@@ -135,13 +135,18 @@ pub(super) fn add_direct(
         let u = rng.uniforms();
         // Directions are taken from the lifted origin that the shadow ray uses: from the surface
         // itself the ray would end behind a plate in which the opening lies.
-        let mut arrival = emitters.arrival(source, above, u);
-        let mut cos = landing.normal.dot(arrival.direction);
-        if cos < 0.0 && transmittance > 0.0 {
-            arrival = emitters.arrival(source, below, u);
-            cos = landing.normal.dot(arrival.direction);
-        }
-        let albedo = if cos > 0.0 { reflectance } else { transmittance };
+        let on_front = |direction: DVec3| landing.normal.dot(direction) > 0.0;
+        let (arrival, albedo) = match emitters.arrival_if(source, above, u, on_front) {
+            Some(arrival) => (arrival, reflectance),
+            None if transmittance > 0.0 => {
+                match emitters.arrival_if(source, below, u, |direction| !on_front(direction)) {
+                    Some(arrival) => (arrival, transmittance),
+                    None => continue,
+                }
+            }
+            None => continue,
+        };
+        let cos = landing.normal.dot(arrival.direction);
         let luminance = arrival.normal_lx * cos.abs() * albedo * std::f64::consts::FRAC_1_PI;
         if luminance > 0.0 && luminance.is_finite() {
             total += luminance;

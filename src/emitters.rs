@@ -13,6 +13,7 @@ use glam::{DMat3, DVec3};
 
 use crate::geometry::trace::Tracer;
 use crate::luminaire::Luminaire;
+use crate::photometry::Opening;
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, unshadowed};
@@ -49,6 +50,8 @@ pub struct Source {
     pub area_m2: f64,
     /// Half the opening's largest extent, m.
     pub radius_m: f64,
+    opening: Opening,
+    dim: f64,
 }
 
 /// Light that would arrive at a point from one point of an opening if nothing stood between.
@@ -78,6 +81,8 @@ impl<'s> Emitters<'s> {
                 world_from_luminaire: luminaire.world_from_luminaire,
                 area_m2: luminaire.kind.opening.area_m2(),
                 radius_m: luminaire.kind.opening.outline().iter().map(|p| p.length()).fold(0.0, f64::max),
+                opening: luminaire.kind.opening,
+                dim: luminaire.dim,
             })
             .collect();
         for (index, mirror) in mirrors.iter().enumerate() {
@@ -100,6 +105,15 @@ impl<'s> Emitters<'s> {
         &self.scene.luminaires[source.luminaire]
     }
 
+    /// Whether anything of a source can be seen from `point`, by a cheap test that only ever errs
+    /// towards yes: an image shows only where its mirror lies between.
+    #[inline]
+    pub fn may_show(&self, source: &Source, point: DVec3) -> bool {
+        source
+            .mirror
+            .is_none_or(|mirror| self.mirrors[mirror].may_show(point, source.position, source.radius_m))
+    }
+
     /// Light from the point of the opening at `u` (in the unit square) to `point`.
     pub fn arrival(&self, source: &Source, point: DVec3, u: [f64; 2]) -> Arrival {
         self.arrival_if(source, point, u, |_| true).unwrap_or(Arrival {
@@ -119,8 +133,7 @@ impl<'s> Emitters<'s> {
         u: [f64; 2],
         wanted: impl FnOnce(DVec3) -> bool,
     ) -> Option<Arrival> {
-        let luminaire = self.luminaire(source);
-        let from = source.position + source.world_from_luminaire * luminaire.kind.opening.point(u);
+        let from = source.position + source.world_from_luminaire * source.opening.point(u);
         let towards = from - point;
         let distance_squared = towards.length_squared();
         // A receiver that touches the opening has no finite point illuminance; it gets none.
@@ -136,7 +149,8 @@ impl<'s> Emitters<'s> {
             self.mirrors[mirror].meet(self.scene, point, direction, distance_m)?;
         }
         let leaving = source.world_from_luminaire.transpose() * -direction;
-        let intensity_cd = luminaire.kind.distribution.intensity_along(leaving) * luminaire.dim;
+        let distribution = &self.luminaire(source).kind.distribution;
+        let intensity_cd = distribution.intensity_along(leaving) * source.dim;
         (intensity_cd > 0.0).then(|| Arrival { direction, distance_m, normal_lx: intensity_cd / distance_squared })
     }
 

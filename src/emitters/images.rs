@@ -37,6 +37,23 @@ impl Mirror {
         DMat3::IDENTITY - DMat3::from_cols(n * n.x, n * n.y, n * n.z) * 2.0
     }
 
+    /// Whether an image of an opening of `radius_m` about `image` may be seen from `point`.
+    #[inline]
+    pub fn may_show(&self, point: DVec3, image: DVec3, radius_m: f64) -> bool {
+        let here = point.dot(self.normal) - self.offset_m;
+        let there = image.dot(self.normal) - self.offset_m;
+        if there.abs() <= radius_m {
+            return true;
+        }
+        if here * there >= 0.0 {
+            return false;
+        }
+        // Other points of the opening meet the plane at most `radius_m` from where its centre does.
+        let at = point + (image - point) * (here / (here - there));
+        let reach_m = self.radius_m + radius_m;
+        (at - self.centre).length_squared() <= reach_m * reach_m
+    }
+
     /// Where the ray meets the plane inside one of its triangles, before `reach_m`.
     pub fn meet(&self, scene: &Scene, origin: DVec3, direction: DVec3, reach_m: f64) -> Option<(f64, u32)> {
         let distance_m = (self.offset_m - origin.dot(self.normal)) / direction.dot(self.normal);

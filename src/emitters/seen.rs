@@ -45,6 +45,9 @@ pub fn seen_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Seen> {
 
 fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen> {
     let source = &emitters.sources[index];
+    if !emitters.may_show(source, eye) {
+        return None;
+    }
     let centre = emitters.arrival(source, eye, [0.5, 0.5]);
     let mut rng = Rng::new(seed, u64::MAX, index as u64);
     let mut solid = Vec::with_capacity(REPLICATES);

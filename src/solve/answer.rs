@@ -112,7 +112,7 @@ fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut 
     let exact = &prepared.unshadowed[first_row..first_row + receiver.kernels.len()];
     for (index, source) in emitters.sources.iter().enumerate() {
         let own = source.mirror.is_none();
-        if own && exact.iter().all(|row| !(row[index] > 0.0)) {
+        if own && exact.iter().all(|row| !(row[index] > 0.0)) || !emitters.may_show(source, origin) {
             continue;
         }
         let sequence = Stratified::new(rng);

@@ -132,6 +132,9 @@ pub(super) fn add_direct(
     scratch.clear();
     let mut total = 0.0;
     for (index, source) in emitters.sources.iter().enumerate() {
+        if !emitters.may_show(source, above) && !(transmittance > 0.0 && emitters.may_show(source, below)) {
+            continue;
+        }
         let u = rng.uniforms();
         // Directions are taken from the lifted origin that the shadow ray uses: from the surface
         // itself the ray would end behind a plate in which the opening lies.

@@ -114,6 +114,11 @@ impl<'s> Emitters<'s> {
             .is_none_or(|mirror| self.mirrors[mirror].may_show(point, source.position, source.radius_m))
     }
 
+    /// Probability with which a random estimate should consider a source; see [`Mirror::chance`].
+    pub fn chance(&self, source: &Source) -> f64 {
+        source.mirror.map_or(1.0, |mirror| self.mirrors[mirror].chance)
+    }
+
     /// Light from the point of the opening at `u` (in the unit square) to `point`.
     pub fn arrival(&self, source: &Source, point: DVec3, u: [f64; 2]) -> Arrival {
         self.arrival_if(source, point, u, |_| true).unwrap_or(Arrival {

@@ -20,6 +20,9 @@ pub struct Mirror {
     pub offset_m: f64,
     /// Triangles in the plane.
     pub triangles: Vec<u32>,
+    /// Probability with which a random estimate considers the images in it: faint reflections (clear
+    /// panes) are taken more rarely and weighted up, which saves more time than it adds noise.
+    pub chance: f64,
     /// Centre and radius of a ball around them, m.
     centre: DVec3,
     radius_m: f64,
@@ -97,7 +100,7 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
             }
             None if found.len() < 4096 => {
                 found.push((
-                Mirror { normal, offset_m, triangles: vec![triangle], centre: DVec3::ZERO, radius_m: 0.0 },
+                Mirror { normal, offset_m, triangles: vec![triangle], chance: 1.0, centre: DVec3::ZERO, radius_m: 0.0 },
                 area_m2,
             ));
             }
@@ -115,7 +118,11 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
         imaged[*triangle as usize] = true;
     }
     for (mirror, _) in &mut found {
-        let corners = || mirror.triangles.iter().flat_map(|&t| mesh.corners(t as usize));
+        let triangles = mirror.triangles.clone();
+        let corners = || triangles.iter().flat_map(|&t| mesh.corners(t as usize));
+        let reflectances = mirror.triangles.iter().filter_map(|&t| scene.bsdf(t).specular(1.0));
+        let reflectance = reflectances.map(|(reflected, _)| reflected).fold(0.0, f64::max);
+        mirror.chance = (2.5 * reflectance).clamp(0.2, 1.0);
         mirror.centre = corners().sum::<DVec3>() / (3.0 * mirror.triangles.len() as f64);
         mirror.radius_m = corners().map(|p| p.distance(mirror.centre)).fold(0.0, f64::max) * (1.0 + 1e-9);
     }

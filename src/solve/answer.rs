@@ -115,6 +115,10 @@ fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut 
         if own && exact.iter().all(|row| !(row[index] > 0.0)) || !emitters.may_show(source, origin) {
             continue;
         }
+        let considered = emitters.chance(source);
+        if considered < 1.0 && rng.uniform() >= considered {
+            continue;
+        }
         let sequence = Stratified::new(rng);
         let samples = if source.area_m2 > 0.0 { points } else { 1 };
         for sample in 0..samples {
@@ -122,7 +126,7 @@ fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut 
             let responds = |direction| receiver.kernels.iter().any(|kernel| kernel.response(direction) > 0.0);
             let Some(arrival) = emitters.arrival_if(source, origin, u, responds) else { continue };
             let passed = emitters.passed(source, origin, &arrival);
-            let lost = if own { passed - 1.0 } else { passed };
+            let lost = if own { passed - 1.0 } else { passed / considered };
             if lost == 0.0 {
                 continue;
             }

@@ -135,6 +135,10 @@ pub(super) fn add_direct(
         if !emitters.may_show(source, above) && !(transmittance > 0.0 && emitters.may_show(source, below)) {
             continue;
         }
+        let considered = emitters.chance(source);
+        if considered < 1.0 && rng.uniform() >= considered {
+            continue;
+        }
         let u = rng.uniforms();
         // Directions are taken from the lifted origin that the shadow ray uses: from the surface
         // itself the ray would end behind a plate in which the opening lies.
@@ -150,7 +154,7 @@ pub(super) fn add_direct(
             None => continue,
         };
         let cos = landing.normal.dot(arrival.direction);
-        let luminance = arrival.normal_lx * cos.abs() * albedo * std::f64::consts::FRAC_1_PI;
+        let luminance = arrival.normal_lx * cos.abs() * albedo * std::f64::consts::FRAC_1_PI / considered;
         if luminance > 0.0 && luminance.is_finite() {
             total += luminance;
             scratch.push((index, luminance, arrival, cos > 0.0));

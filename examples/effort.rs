@@ -28,15 +28,19 @@ fn main() {
     let base = Effort::default();
     let list = [
         base,
+        Effort { gather: 8, ..base },
+        Effort { gather: 32, ..base },
+        Effort { walks: 4, ..base },
+        Effort { walks: 8, ..base },
+        Effort { looks: 1, ..base },
         Effort { looks: 2, ..base },
-        Effort { looks: 4, ..base },
         Effort { looks: 8, ..base },
-        Effort { looks: 4, shadow_rays: 12.0, ..base },
-        Effort { looks: 4, shadow_rays: 12.0, walks: 2, ..base },
-        Effort { looks: 4, shadow_rays: 12.0, walks: 2, patch_m2: Some(0.03), ..base },
-        Effort { looks: 4, walks: 8, opening_points: 4, ..base },
-        Effort { looks: 4, walks: 8, opening_points: 4, shadow_rays: 12.0, ..base },
-        Effort { looks: 4, walks: 16, opening_points: 4, gather: 64, ..base },
+        Effort { shadow_rays: 4.0, ..base },
+        Effort { shadow_rays: 16.0, ..base },
+        Effort { opening_points: 4, ..base },
+        Effort { links: 128, ..base },
+        Effort { patch_m2: Some(0.3), ..base },
+        Effort { patch_m2: Some(0.03), ..base },
     ];
     for effort in list {
         let t0 = common::cpu_seconds();

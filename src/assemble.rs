@@ -6,8 +6,8 @@ use crate::emitters::{Emitters, Seen};
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
-    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome, Value, Verdict,
-    ViewpointOutcome,
+    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome, Value,
+    Verdict, ViewpointOutcome,
 };
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
 use crate::project::{Compare, Project, Room, World};

@@ -156,7 +156,11 @@ impl<'s> Emitters<'s> {
         let leaving = source.world_from_luminaire.transpose() * -direction;
         let distribution = &self.luminaire(source).kind.distribution;
         let intensity_cd = distribution.intensity_along(leaving) * source.dim;
-        (intensity_cd > 0.0).then(|| Arrival { direction, distance_m, normal_lx: intensity_cd / distance_squared })
+        (intensity_cd > 0.0).then(|| Arrival {
+            direction,
+            distance_m,
+            normal_lx: intensity_cd / distance_squared,
+        })
     }
 
     /// Share of an arrival that reaches `point`: 0 behind anything opaque, pane transmittances,

@@ -100,9 +100,16 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
             }
             None if found.len() < 4096 => {
                 found.push((
-                Mirror { normal, offset_m, triangles: vec![triangle], chance: 1.0, centre: DVec3::ZERO, radius_m: 0.0 },
-                area_m2,
-            ));
+                    Mirror {
+                        normal,
+                        offset_m,
+                        triangles: vec![triangle],
+                        chance: 1.0,
+                        centre: DVec3::ZERO,
+                        radius_m: 0.0,
+                    },
+                    area_m2,
+                ));
             }
             None => {}
         }

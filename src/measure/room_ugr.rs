@@ -26,7 +26,9 @@ impl Tables {
         // The method asks for the same few zones again and again.
         let zones: RefCell<Vec<(f64, f64, f64)>> = RefCell::default();
         let zonal_flux_lm = |from: f64, to: f64| {
-            let same = |zone: &(f64, f64, f64)| zone.0.to_bits() == from.to_bits() && zone.1.to_bits() == to.to_bits();
+            let same = |zone: &(f64, f64, f64)| {
+                zone.0.to_bits() == from.to_bits() && zone.1.to_bits() == to.to_bits()
+            };
             if let Some(zone) = zones.borrow().iter().find(|zone| same(zone)) {
                 return zone.2;
             }
@@ -72,7 +74,13 @@ pub fn worst(tables: &[UgrTableOutcome]) -> Result<f64, Undefined> {
     worst.ok_or_else(|| Undefined::because("the room has no luminaire"))
 }
 
-fn of_kind(tables: &mut Tables, world: &World, room: &Room, kind: &LuminaireType, shr: f64) -> UgrTableOutcome {
+fn of_kind(
+    tables: &mut Tables,
+    world: &World,
+    room: &Room,
+    kind: &LuminaireType,
+    shr: f64,
+) -> UgrTableOutcome {
     let mut outcome = UgrTableOutcome {
         kind: kind.name.clone(),
         shr,

@@ -65,11 +65,11 @@ impl Default for Effort {
     fn default() -> Self {
         Self {
             patch_m2: None,
-            links: 64,
+            links: 32,
             gather: 16,
-            walks: 4,
-            looks: 1,
-            shadow_rays: 6.0,
+            walks: 2,
+            looks: 4,
+            shadow_rays: 8.0,
             opening_points: 1,
             particles: 1024,
             paths: 16,

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Plan, PlanError, PlannedArea, PlannedQuantity, Rows};
+use crate::geometry::trace::Hit;
 use crate::grid::{self, Exclusion, Grid, GridRule};
 use crate::project::{AreaKind, AreaShape, AreaSpec, CustomSubject, Project, Room, World};
 use crate::quantity::Quantity;
@@ -12,6 +13,8 @@ use crate::sphere;
 
 /// How far from a room's nominal wall or ceiling its real surface is looked for, m.
 const SNAP_M: f64 = 0.25;
+/// Surfaces closer than this share a plane, m.
+const TOUCHING_M: f64 = 1e-6;
 
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     let mut specs: Vec<AreaSpec> = world.areas.clone();
@@ -256,10 +259,15 @@ fn inside_furniture(scene: &Scene, point: &grid::GridPoint, on_surface: bool) ->
             } else {
                 direction
             };
-            scene.tracer.closest(at, direction, &[]).is_some_and(|hit| {
-                let surface = scene.tracer.surface(hit.triangle) as usize;
-                !hit.front && scene.mesh.surfaces[surface].furniture
-            })
+            let surface = |hit: &Hit| scene.tracer.surface(hit.triangle);
+            let from_within = |hit: &Hit| !hit.front && scene.mesh.surfaces[surface(hit) as usize].furniture;
+            let Some(first) = scene.tracer.closest(at, direction, &[]) else { return false };
+            // A piece that stands on the floor shares a plane with it, and a ray may meet the floor first.
+            from_within(&first)
+                || scene
+                    .tracer
+                    .closest(at, direction, &[surface(&first)])
+                    .is_some_and(|next| from_within(&next) && next.distance_m < first.distance_m + TOUCHING_M)
         })
 }
 

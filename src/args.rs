@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use gershun::Settings;
-use gershun::project::{Goal, Project};
+use gershun::geometry::trace::Simd;
+use gershun::project::{Goal, LoadOptions, Project};
 use gershun::report::Lang;
 use gershun::solve::Method;
 
@@ -115,6 +116,9 @@ pub struct Check {
     /// Let the project read files outside its folder
     #[arg(long)]
     pub allow_outside: bool,
+    /// SIMD level of the ray tracer; it never changes a result, which a test proves by switching it off
+    #[arg(long, value_enum, default_value_t = SimdChoice::Detect, hide = true)]
+    pub simd: SimdChoice,
     /// Print nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
@@ -161,6 +165,15 @@ pub enum Format {
     Sarif,
 }
 
+/// SIMD levels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SimdChoice {
+    /// AVX2 where the machine has it
+    Detect,
+    /// The baseline of the build only
+    Off,
+}
+
 /// Languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LangChoice {
@@ -192,6 +205,17 @@ impl LangChoice {
 }
 
 impl Check {
+    /// How projects are loaded.
+    pub fn load_options(&self) -> LoadOptions {
+        LoadOptions {
+            allow_outside: self.allow_outside,
+            simd: match self.simd {
+                SimdChoice::Detect => Simd::Detect,
+                SimdChoice::Off => Simd::Off,
+            },
+        }
+    }
+
     /// Settings of the run; the command line beats the project file.
     pub fn settings(&self, project: &mut Project) -> Settings {
         let (relative, most_blocks) = match self.accuracy {

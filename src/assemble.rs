@@ -164,7 +164,9 @@ impl Context<'_> {
         let kind = &self.world.scene.luminaires[luminaire].kind;
         let of =
             |subject: &str| self.project.declared.iter().find(|d| d.subject == subject).and_then(|d| d.ra);
-        of(&kind.name).or_else(|| of(&room.name)).or(kind.declared_ra)
+        // A type that hangs with the maintenance of several rooms is called "A (room)" from the second on.
+        let listed = kind.name.split_once(" (").and_then(|(listed, _)| of(listed));
+        of(&kind.name).or(listed).or_else(|| of(&room.name)).or(kind.declared_ra)
     }
 
     /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.

@@ -190,7 +190,6 @@ fn solve_world(
     let most = settings.exact_blocks.unwrap_or(settings.most_blocks.min(fitting));
     let mut sheets: Vec<Sheet> = Vec::new();
     let mut target = settings.exact_blocks.unwrap_or(settings.least_blocks);
-    let mut look = 1;
     let mut open = 0;
     loop {
         let finished = extend(&prepared, &mut sheets, target, settings, watch, started, |blocks| {
@@ -214,7 +213,7 @@ fn solve_world(
             seen: &seen,
             tables: &tables,
             alpha,
-            joint_alpha: judge::look_alpha(alpha, look),
+            joint_alpha: judge::look_alpha(alpha, look_at(sheets.len(), settings.least_blocks)),
         };
         let required: Vec<Vec<Requirement>> =
             (0..world.rooms.len()).map(|room| context.requirements(room)).collect();
@@ -248,8 +247,14 @@ fn solve_world(
             return stop;
         }
         target = (2 * target).min(most);
-        look += 1;
     }
+}
+
+/// The how-manieth look a run has after `blocks` blocks. It depends on their number only, so that
+/// `--blocks N` repeats a run that stopped after N for whatever reason, intervals included.
+fn look_at(blocks: usize, least_blocks: usize) -> u32 {
+    let rounds = blocks.div_ceil(least_blocks.max(1)).max(1);
+    1 + rounds.next_power_of_two().ilog2()
 }
 
 /// Adds blocks up to `target`, in batches so that time and interruption are noticed; why it ended early.
@@ -291,11 +296,11 @@ impl Total {
             compare: norm.compare,
         });
         let stopped = match self.stopped {
-            Some(Stop::Certain) => "every verdict is certain",
+            Some(Stop::Certain) => "verdicts certain",
             Some(Stop::Accurate) => "accuracy reached",
-            Some(Stop::Asked) => "number of blocks asked for",
+            Some(Stop::Asked) => "blocks asked for",
             Some(Stop::Limit) => "block limit",
-            Some(Stop::Time) => "time limit",
+            Some(Stop::Time) => "time",
             Some(Stop::Interrupted) => "interrupted",
             None => "nothing to solve",
         };
@@ -333,6 +338,20 @@ impl Total {
             plan: self.plan,
             biases,
             inputs: project.inputs.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: intervals that depend on why a run stopped and not on its blocks alone.
+    #[test]
+    fn looks_are_counted_by_blocks() {
+        // A run looks after 32, 64, 128 … blocks, at the limit, and where time or the user ends it.
+        for (blocks, look) in [(2, 1), (32, 1), (48, 2), (64, 2), (80, 3), (128, 3), (1000, 6), (1024, 6)] {
+            assert_eq!(look_at(blocks, 32), look, "{blocks}");
         }
     }
 }

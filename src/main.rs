@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use gershun::norm::{Bound, Standard, bundled};
 use gershun::outcome::{Outcome, Verdict};
-use gershun::project::{LoadOptions, Project, load};
+use gershun::project::{Project, load};
 use gershun::report::{self, Colour, Lang, Style};
 use gershun::{Progress, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -99,7 +99,7 @@ fn graver(a: u8, b: u8) -> u8 {
 }
 
 fn load_one(path: &Path, check: &Check) -> Option<Project> {
-    match load(path, &LoadOptions { allow_outside: check.allow_outside }) {
+    match load(path, &check.load_options()) {
         Ok(project) => Some(project),
         Err(diagnostics) => {
             for diagnostic in &diagnostics {
@@ -199,7 +199,12 @@ fn print(outcome: &Outcome, check: &Check, out: &Path) -> u8 {
                 }
             }
             let code = say(&text);
-            eprintln!("report: {}", out.join("report.html").display());
+            let stopped = report::words::stopped(lang, &outcome.solver.stopped);
+            eprintln!(
+                "{} blocks: {stopped}\nreport: {}",
+                outcome.solver.blocks,
+                out.join("report.html").display()
+            );
             code
         }
         Format::Json => match std::fs::read_to_string(out.join("result.json")) {

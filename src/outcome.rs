@@ -61,7 +61,10 @@ pub struct Solver {
     pub method: String,
     /// Blocks used by the largest world.
     pub blocks: usize,
-    /// Why it stopped: `verdicts certain`, `block limit`, `accuracy reached`, `time`, `interrupted`.
+    /// Why it stopped: `verdicts certain`, `block limit`, `accuracy reached`, `time`, `interrupted`,
+    /// `blocks asked for`. Told to the user and kept out of every file: `--blocks N` repeats a run that
+    /// stopped after N blocks byte for byte, whatever stopped it.
+    #[serde(skip)]
     pub stopped: String,
     /// Seed.
     pub seed: u64,

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::geometry::mesh::Mesh;
-use crate::geometry::trace::Tracer;
+use crate::geometry::trace::{Simd, Tracer};
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
 
@@ -75,6 +75,19 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] names the first fault.
     pub fn new(mesh: Mesh, materials: Vec<Material>, luminaires: Vec<Luminaire>) -> Result<Self, SceneError> {
+        Self::new_with(mesh, materials, luminaires, Simd::Detect)
+    }
+
+    /// [`Scene::new`] with an explicit SIMD level, which never changes a result.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the first fault.
+    pub fn new_with(
+        mesh: Mesh,
+        materials: Vec<Material>,
+        luminaires: Vec<Luminaire>,
+        simd: Simd,
+    ) -> Result<Self, SceneError> {
         validate(&mesh, &materials)?;
         let mut channels: Vec<Channel> = Vec::new();
         let mut channel_of = Vec::with_capacity(luminaires.len());
@@ -95,7 +108,7 @@ impl Scene {
                 channels.push(Channel::Surfaces { material });
             }
         }
-        let tracer = Tracer::build(&mesh, &materials);
+        let tracer = Tracer::build_with(&mesh, &materials, simd);
         Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer })
     }
 

@@ -53,6 +53,8 @@ impl std::fmt::Debug for Tracer {
 }
 
 const OPAQUE: u32 = u32::MAX;
+/// Barycentric weight below which a pane counts as met on an edge: far above rounding, far below size.
+const ON_EDGE: f64 = 1e-12;
 const WIDTH: usize = 8;
 const LANES: usize = 4;
 const EMPTY: u32 = u32::MAX;
@@ -88,9 +90,10 @@ struct Prepared {
 }
 
 /// The SIMD instruction level that the traversal may use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Simd {
     /// AVX2 where the machine has it.
+    #[default]
     Detect,
     /// The baseline of the build only (results are the same; a test compares them).
     Off,
@@ -225,7 +228,8 @@ impl Tracer {
 
     #[inline(always)]
     fn transmittance_body(&self, ray: &Prepared, direction: DVec3, distance_m: f64, blind: &[u32]) -> f64 {
-        let mut passing = Passing { tracer: self, blind, reach: distance_m, direction, passed: 1.0 };
+        let mut passing =
+            Passing { tracer: self, blind, reach: distance_m, direction, passed: 1.0, edges: Vec::new() };
         self.traverse(ray, &mut passing);
         passing.passed
     }
@@ -403,13 +407,16 @@ impl Visitor for Nearest<'_> {
     }
 }
 
-/// Multiplies the transmittances of panes on the way; anything opaque ends it.
+/// Multiplies the transmittances of panes on the way; anything opaque ends it. A ray through a common
+/// edge meets both triangles of one pane: it counts once.
 struct Passing<'a> {
     tracer: &'a Tracer,
     blind: &'a [u32],
     reach: f64,
     direction: DVec3,
     passed: f64,
+    /// Distances at which panes were met exactly on an edge; hardly ever any.
+    edges: Vec<f64>,
 }
 
 impl Visitor for Passing<'_> {
@@ -420,7 +427,7 @@ impl Visitor for Passing<'_> {
 
     #[inline(always)]
     fn visit(&mut self, pack: &Pack, ray: &Prepared) -> bool {
-        let (distance, _, _, hit) = meet(pack, ray);
+        let (distance, second, third, hit) = meet(pack, ray);
         for lane in 0..LANES {
             if hit[lane] && distance[lane] < self.reach {
                 let id = pack.id[lane];
@@ -432,11 +439,27 @@ impl Visitor for Passing<'_> {
                     self.passed = 0.0;
                     return true;
                 }
+                let first = 1.0 - second[lane] - third[lane];
+                if first.min(second[lane]).min(third[lane]) < ON_EDGE && self.met_before(distance[lane]) {
+                    continue;
+                }
                 let cos = self.tracer.normals[id as usize].dot(self.direction).abs();
                 self.passed *= self.tracer.panes[pane as usize].transmittance(cos);
             }
         }
         false
+    }
+}
+
+impl Passing<'_> {
+    /// Whether a pane was met at this distance before, by the triangle on the other side of an edge.
+    #[cold]
+    fn met_before(&mut self, distance_m: f64) -> bool {
+        let met = self.edges.iter().any(|known| (known - distance_m).abs() <= self.tracer.offset_m);
+        if !met {
+            self.edges.push(distance_m);
+        }
+        met
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Plan, PlanError, PlannedArea, PlannedQuantity, Rows};
+use crate::geometry::trace::Hit;
 use crate::grid::{self, Exclusion, Grid, GridRule};
 use crate::project::{AreaKind, AreaShape, AreaSpec, CustomSubject, Project, Room, World};
 use crate::quantity::Quantity;
@@ -12,6 +13,8 @@ use crate::sphere;
 
 /// How far from a room's nominal wall or ceiling its real surface is looked for, m.
 const SNAP_M: f64 = 0.25;
+/// Surfaces closer than this share a plane, m.
+const TOUCHING_M: f64 = 1e-6;
 
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     let mut specs: Vec<AreaSpec> = world.areas.clone();
@@ -264,11 +267,20 @@ fn leaves_solid(scene: &Scene, mut origin: DVec3, direction: DVec3) -> bool {
     let mut inside = 0;
     for _ in 0..MOST_FACES {
         let Some(hit) = scene.tracer.closest(origin, direction, &[]) else { break };
-        let surface = scene.tracer.surface(hit.triangle) as usize;
-        if !scene.mesh.surfaces[surface].furniture {
+        let surface = scene.tracer.surface(hit.triangle);
+        let is_furniture = |hit: &Hit| scene.mesh.surfaces[scene.tracer.surface(hit.triangle) as usize].furniture;
+        let leaving = |hit: &Hit| if hit.front { -1 } else { 1 };
+        if !is_furniture(&hit) {
+            // A piece that stands on the floor shares a plane with it, and a ray may meet the floor first.
+            let touching = scene.tracer.closest(origin, direction, &[surface]);
+            if let Some(next) = touching.filter(|next| next.distance_m < hit.distance_m + TOUCHING_M)
+                && is_furniture(&next)
+            {
+                inside += leaving(&next);
+            }
             break;
         }
-        inside += if hit.front { -1 } else { 1 };
+        inside += leaving(&hit);
         origin += direction * (hit.distance_m + scene.tracer.offset_m());
     }
     inside > 0

@@ -10,6 +10,7 @@ use toml::Spanned;
 
 use super::InputFile;
 use super::diagnostics::Diagnostic;
+use crate::geometry::trace::Simd;
 
 /// Largest photometric, CSV or norm file.
 pub const SMALL_FILE: u64 = 64 << 20;
@@ -33,6 +34,8 @@ pub struct Context {
     pub inputs: Vec<InputFile>,
     /// Whether files outside the folder may be read.
     pub allow_outside: bool,
+    /// SIMD level of the tracers that are built.
+    pub simd: Simd,
 }
 
 impl Context {

@@ -17,6 +17,7 @@ use serde::Deserialize;
 
 pub use diagnostics::{Diagnostic, suggestion};
 
+use crate::geometry::trace::Simd;
 use crate::grid::GridRule;
 use crate::norm::Standard;
 use crate::quantity::{Quantity, Statistic};
@@ -27,6 +28,8 @@ use crate::scene::Scene;
 pub struct LoadOptions {
     /// Whether files outside the project's folder may be read.
     pub allow_outside: bool,
+    /// SIMD level of the tracer; results do not depend on it.
+    pub simd: Simd,
 }
 
 /// Loads a project.toml, or the one in a folder.
@@ -59,6 +62,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Project, Vec<Diagnosti
         biases: Vec::new(),
         inputs: Vec::new(),
         allow_outside: options.allow_outside,
+        simd: options.simd,
     };
     let name = full.file_name().map_or("project.toml".into(), |name| name.to_string_lossy());
     let text = context.text.clone();

@@ -253,7 +253,6 @@ fn method(outcome: &Outcome, lang: Lang) -> String {
     html.push_str(&pairs(&[
         (word(lang, Term::SolverWord), escape(&solver.method)),
         (word(lang, Term::Blocks), count(solver.blocks as f64)),
-        (word(lang, Term::Stopped), escape(words::stopped(lang, &solver.stopped))),
         (word(lang, Term::Confidence), number::fixed(lang, solver.confidence, 2)),
         (word(lang, Term::Seed), solver.seed.to_string()),
         (word(lang, Term::Triangles), count(solver.triangles as f64)),

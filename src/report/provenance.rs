@@ -19,7 +19,6 @@ struct ProvenanceFile<'a> {
     seed: u64,
     method: &'a str,
     blocks: usize,
-    stopped: &'a str,
     inputs: &'a [InputFile],
     files: Vec<FileRow>,
 }
@@ -39,7 +38,6 @@ pub fn provenance(outcome: &Outcome, files: &[(String, Vec<u8>)]) -> Result<Vec<
         seed: outcome.solver.seed,
         method: &outcome.solver.method,
         blocks: outcome.solver.blocks,
-        stopped: &outcome.solver.stopped,
         inputs: &outcome.inputs,
         files: files
             .iter()

@@ -78,7 +78,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
 }
 
 fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World> {
-    match Scene::new(draft.mesh, draft.materials, draft.luminaires) {
+    match Scene::new_with(draft.mesh, draft.materials, draft.luminaires, context.simd) {
         Ok(scene) => Some(World {
             scene,
             rooms: draft.rooms,

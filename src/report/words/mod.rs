@@ -218,6 +218,7 @@ pub fn stopped(lang: Lang, reason: &str) -> &str {
         "block limit" => word(lang, Term::StoppedLimit),
         "accuracy reached" => word(lang, Term::StoppedAccuracy),
         "time" => word(lang, Term::StoppedTime),
+        "blocks asked for" => word(lang, Term::StoppedAsked),
         "interrupted" => word(lang, Term::StoppedInterrupted),
         _ => reason,
     }

@@ -37,6 +37,8 @@ pub struct Outcome {
 pub struct NormOutcome {
     /// Key, `en-12464-1-2021`.
     pub id: String,
+    /// What a verdict calls it, `EN 12464-1:2021`.
+    pub short: String,
     /// Title as printed.
     pub title: String,
     /// Edition.
@@ -61,7 +63,8 @@ pub struct Solver {
     pub method: String,
     /// Blocks used by the largest world.
     pub blocks: usize,
-    /// Why it stopped: `verdicts certain`, `block limit`, `accuracy reached`, `time`, `interrupted`.
+    /// Why it stopped: `every verdict is certain`, `accuracy reached`, `number of blocks asked for`,
+    /// `block limit`, `time limit`, `interrupted`.
     pub stopped: String,
     /// Seed.
     pub seed: u64,

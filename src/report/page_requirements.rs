@@ -58,6 +58,11 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     ]
 }
 
+/// Said once below the table, not in every row.
+fn is_maintained(r: &Requirement) -> bool {
+    r.note == "maintained"
+}
+
 /// The verdict's word and, below it, what must be known with it.
 fn verdict(lang: Lang, r: &Requirement) -> String {
     let mut html =
@@ -67,7 +72,7 @@ fn verdict(lang: Lang, r: &Requirement) -> String {
     }
     let mut lines: Vec<String> = Vec::new();
     lines.extend(r.value.as_ref().err().map(|undefined| escape(&undefined.reason)));
-    lines.extend((!r.note.is_empty()).then(|| escape(words::note(lang, &r.note))));
+    lines.extend((!r.note.is_empty() && !is_maintained(r)).then(|| escape(words::note(lang, &r.note))));
     lines.extend(
         r.other_comparison.map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
     );
@@ -90,6 +95,9 @@ pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String
     }
     if any(&is_at_the_limit) {
         notes.push(word(lang, Term::AtTheLimitMeans).to_owned());
+    }
+    if any(&is_maintained) {
+        notes.push(words::note(lang, "maintained").to_owned());
     }
     let keys: BTreeSet<String> = outcome
         .requirements

@@ -113,6 +113,8 @@ fn margin(lang: Lang, requirement: &Requirement) -> String {
             let sign = if margin > 0.0 { "+" } else { "" };
             let text = if requirement.quantity == Quantity::Ugr {
                 number::fixed(lang, margin, 1)
+            } else if margin.abs() >= 1.0 {
+                format!("{}\u{a0}%", number::fixed(lang, 100.0 * margin, 0))
             } else {
                 number::percent(lang, margin)
             };

@@ -303,7 +303,7 @@ pub const TERMS: [(Term, &str, &str); COUNT] = [
     (Term::IndexMin, "min", "мин"),
     (Term::IndexMax, "max", "макс"),
     (Term::MinByMax, "E_min/E_max", "Eмин/Eмакс"),
-    (Term::MaintainedValue, "maintained", "эксплуатационное значение"),
+    (Term::MaintainedValue, "illuminances are maintained values: the maintenance factor is applied", "освещённости — эксплуатационные значения: коэффициент эксплуатации учтён"),
     (Term::MaintainedValues, "maintained values", "эксплуатационные значения"),
     (Term::InitialValues, "initial values", "начальные значения"),
     (Term::UgrTable, "UGR by the table method (CIE 190)", "UGR по таблице (табличный метод, CIE 190)"),

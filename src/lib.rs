@@ -291,6 +291,7 @@ impl Total {
     fn outcome(self, project: &Project, settings: &Settings) -> Outcome {
         let norm = project.norm.as_ref().map(|norm| NormOutcome {
             id: norm.standard.id.clone(),
+            short: norm.standard.short.clone(),
             title: norm.standard.title.clone(),
             edition: norm.standard.edition.clone(),
             compare: norm.compare,

@@ -25,6 +25,8 @@ pub fn bundled() -> &'static [(&'static str, &'static str)] {
 pub struct Standard {
     /// Name in project files, `en-12464-1-2021`.
     pub id: String,
+    /// What a verdict calls it, `EN 12464-1:2021`; never empty.
+    pub short: String,
     /// Title as printed.
     pub title: String,
     /// Edition, `2021`.
@@ -325,5 +327,7 @@ mod tests {
         assert_eq!(limits[0].bound, Bound::Min(300.0));
         assert_eq!(standard.surrounding_illuminance(500.0), None);
         assert_eq!(standard.application, Application::default());
+        assert_eq!(standard.short, "house", "a norm without a short name is called by its id");
+        assert_eq!(en().short, "EN 12464-1:2021");
     }
 }

@@ -37,6 +37,8 @@ pub struct Outcome {
 pub struct NormOutcome {
     /// Key, `en-12464-1-2021`.
     pub id: String,
+    /// What a verdict calls it, `EN 12464-1:2021`.
+    pub short: String,
     /// Title as printed.
     pub title: String,
     /// Edition.

@@ -84,9 +84,12 @@ pub(super) fn standard(text: &str, file: &str) -> Result<Standard, NormError> {
         rows.push(reader.row(row));
     }
     if reader.mistakes.is_empty() {
-        let StandardText { id, title, edition, note, .. } =
+        let StandardText { id, short, title, edition, note, .. } =
             StandardText { row: Vec::new(), application: None, ..parsed };
-        Ok(Standard { id: id.into_inner(), title, edition, note, application, rows })
+        let id = id.into_inner();
+        // A house norm without a short name is called by its id.
+        let short = if short.trim().is_empty() { id.clone() } else { short };
+        Ok(Standard { id, short, title, edition, note, application, rows })
     } else {
         Err(NormError { mistakes: reader.mistakes })
     }

@@ -12,6 +12,8 @@ use crate::quantity::{Quantity, Statistic};
 pub(super) struct StandardText {
     pub(super) id: Spanned<String>,
     #[serde(default)]
+    pub(super) short: String,
+    #[serde(default)]
     pub(super) title: String,
     #[serde(default)]
     pub(super) edition: String,

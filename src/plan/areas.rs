@@ -268,7 +268,8 @@ fn leaves_solid(scene: &Scene, mut origin: DVec3, direction: DVec3) -> bool {
     for _ in 0..MOST_FACES {
         let Some(hit) = scene.tracer.closest(origin, direction, &[]) else { break };
         let surface = scene.tracer.surface(hit.triangle);
-        let is_furniture = |hit: &Hit| scene.mesh.surfaces[scene.tracer.surface(hit.triangle) as usize].furniture;
+        let is_furniture =
+            |hit: &Hit| scene.mesh.surfaces[scene.tracer.surface(hit.triangle) as usize].furniture;
         let leaving = |hit: &Hit| if hit.front { -1 } else { 1 };
         if !is_furniture(&hit) {
             // A piece that stands on the floor shares a plane with it, and a ray may meet the floor first.

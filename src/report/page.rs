@@ -268,7 +268,8 @@ fn method(outcome: &Outcome, lang: Lang) -> String {
         put(&mut html, format_args!("<p>{}</p>\n", word(lang, Term::NoBiases)));
     } else {
         let item = |bias: &Bias| {
-            format!("{}. {}: {}", escape(&bias.what), word(lang, Term::Effect), escape(&bias.effect))
+            let what = bias.what.trim_end_matches('.');
+            format!("{}. {}: {}", escape(what), word(lang, Term::Effect), escape(&bias.effect))
         };
         html.push_str(&list(outcome.biases.iter().map(item)));
     }

@@ -41,7 +41,7 @@ pub fn ugr_table(tables: &[UgrTableOutcome], lang: Lang) -> String {
 pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
     let row = |view: &ViewpointOutcome| {
         let eye = view.eye.to_array().map(|length| number::metres(lang, length)).join("; ");
-        let angle = |degrees| format!("{}°", number::metres(lang, degrees));
+        let angle = |degrees| format!("{}°", number::fixed(lang, degrees, 1));
         let ugr = match &view.ugr {
             Ok(ugr) => format!("<b>{}</b>", number::fixed(lang, ugr.value, 1)),
             Err(undefined) => format!("— <span class=\"note\">{}</span>", escape(&undefined.reason)),
@@ -99,7 +99,12 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
             ]
         })
         .collect();
-    let source = format!("{} — {}", word(lang, Term::GlareSource), escape(&view.name));
+    let source = format!(
+        "{} — {} <span class=\"note\">{}</span>",
+        word(lang, Term::GlareSource),
+        escape(&view.name),
+        escape(&view.light_scene)
+    );
     let head = [
         &source,
         word(lang, Term::SourceLuminance),

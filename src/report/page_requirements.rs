@@ -1,7 +1,7 @@
 //! The table of requirements on the page: limit, value, numerical interval, margin, verdict.
 
 use super::markup::{class_of, grid, symbol};
-use super::sentence::{Naming, is_unverified, sentence};
+use super::sentence::{Naming, is_at_the_limit, is_unverified, sentence};
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::{escape, put};
 use crate::outcome::{Outcome, Requirement, Verdict};
@@ -47,7 +47,10 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     vec![
         format!("<span title=\"{name}\">{}</span>", symbol(&text.symbol)),
         escape(&place),
-        format!("<span class=\"w\">{}{mark}</span><br/><span class=\"note\">{source}</span>", text.required),
+        format!(
+            "<span class=\"w\">{}{mark}</span><br/><span class=\"note w\">{source}</span>",
+            text.required
+        ),
         text.value,
         text.interval,
         text.margin,
@@ -55,16 +58,21 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     ]
 }
 
+/// Said once below the table, not in every row.
+fn is_maintained(r: &Requirement) -> bool {
+    r.note == "maintained"
+}
+
 /// The verdict's word and, below it, what must be known with it.
 fn verdict(lang: Lang, r: &Requirement) -> String {
     let mut html =
         format!("<span class=\"{}\">{}</span>", class_of(Some(r.verdict)), words::verdict(lang, r.verdict));
-    if r.at_the_limit {
+    if is_at_the_limit(r) {
         put(&mut html, format_args!(", {}", word(lang, Term::AtTheLimit)));
     }
     let mut lines: Vec<String> = Vec::new();
     lines.extend(r.value.as_ref().err().map(|undefined| escape(&undefined.reason)));
-    lines.extend((!r.note.is_empty()).then(|| escape(&r.note)));
+    lines.extend((!r.note.is_empty() && !is_maintained(r)).then(|| escape(words::note(lang, &r.note))));
     lines.extend(
         r.other_comparison.map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
     );
@@ -85,8 +93,11 @@ pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String
     if any(&|r| r.verdict == Verdict::Undecided) {
         notes.push(word(lang, Term::UndecidedMeans).to_owned());
     }
-    if any(&|r| r.at_the_limit) {
+    if any(&is_at_the_limit) {
         notes.push(word(lang, Term::AtTheLimitMeans).to_owned());
+    }
+    if any(&is_maintained) {
+        notes.push(words::note(lang, "maintained").to_owned());
     }
     let keys: BTreeSet<String> = outcome
         .requirements

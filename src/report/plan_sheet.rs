@@ -184,8 +184,9 @@ impl Drawing<'_> {
         let text = format!("{} {}", number::metres(lang, length_m), word(lang, Term::UnitMetre));
         self.canvas.text([from + length + 6.0, y], &text, small);
         let mut x = from + length + 6.0 + text_width(&text, 9.5) + 18.0;
-        let has_lines = self.subject.area.grid.columns > 0;
-        if let Some(requirement) = self.limit.filter(|_| has_lines) {
+        let is_drawn =
+            self.subject.area.grid.columns > 0 && self.levels().iter().any(|(_, is_limit)| *is_limit);
+        if let Some(requirement) = self.limit.filter(|_| is_drawn) {
             let (limit, _) = bound(requirement.bound);
             let unit = number::unit(lang, requirement.quantity, requirement.statistic);
             let text = format!(

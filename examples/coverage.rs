@@ -1,0 +1,93 @@
+//! How often the 95 % intervals contain the truth: 1 000 seeds of the office, 64 blocks each, at
+//! places chosen beforehand. The truth is the mean over all seeds, whose own error is 1/32 of one
+//! run's. Writes CSV and a table to reports/coverage:
+//!
+//!     cargo run --release --example coverage [SEEDS]
+#![allow(clippy::print_stdout, reason = "a study prints")]
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use gershun::emitters::seen_from;
+use gershun::estimate::{Estimate, Pair};
+use gershun::grid::{GridRule, rectangle};
+use gershun::measure::{Answers, view, weights};
+use gershun::project::{LoadOptions, load};
+use gershun::query::{Demand, Kernel, Receiver};
+use gershun::solve::{Effort, Method, answer, prepare};
+use glam::DVec3;
+use rayon::prelude::*;
+
+const BLOCKS: u64 = 64;
+const ALPHA: f64 = 0.05;
+
+/// One run's value and interval of each quantity.
+type Run = Vec<(f64, f64, f64)>;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let seeds: u64 = std::env::args().nth(1).map_or(Ok(1000), |text| text.parse())?;
+    let project = load(Path::new("scenes/office"), &LoadOptions::default()).map_err(|_| "scenes/office does not load")?;
+    let world = &project.worlds[0];
+    let planar = |point: DVec3, normal: DVec3| Receiver { point, lift: normal, kernels: vec![Kernel::Planar { normal }] };
+    let desk = rectangle(DVec3::new(1.59, 1.69, 0.75), DVec3::X * 1.6, DVec3::Y * 0.6, DVec3::Z, GridRule::En, 0.0, None)?;
+    let gaze = DVec3::Y;
+    let eye = DVec3::new(4.0, 1.6, 1.2);
+    let mut receivers = vec![
+        planar(DVec3::new(3.0, 2.5, 0.0), DVec3::Z),
+        planar(DVec3::new(0.05, 0.05, 0.0), DVec3::Z),
+        planar(DVec3::new(8.0, 0.6, 1.2), DVec3::NEG_X),
+        planar(eye, gaze),
+    ];
+    receivers.extend(desk.points.iter().map(|point| planar(point.position, DVec3::Z)));
+    let demand = Demand { receivers, rays: Vec::new(), flux: false };
+    let names = ["E floor, middle", "E floor, 5 cm from two walls", "E wall, beside the glass", "Ē desk", "U0 contrast, desk corner", "UGR"];
+    let light = weights(world, &project.light_scenes[0], &world.rooms[0], false);
+    let one = |seed: u64| -> Run {
+        let effort = Effort { patch_m2: Some(0.25), ..Effort::default() };
+        let prepared = prepare(&world.scene, &demand, Method::Links, effort, seed);
+        let sheets: Vec<_> = (0..BLOCKS).map(|block| answer(&prepared, block)).collect();
+        let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
+        let mut run = Run::new();
+        let mut add = |blocks: &[f64]| {
+            let estimate = Estimate::from_blocks(blocks);
+            let (lo, hi) = estimate.interval(ALPHA);
+            run.push((estimate.value, lo, hi));
+        };
+        for row in 0..3 {
+            add(&answers.total(row, &light));
+        }
+        let points: Vec<Vec<f64>> = (4..demand.rows()).map(|row| answers.total(row, &light)).collect();
+        let mean: Vec<f64> =
+            (0..BLOCKS as usize).map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64).collect();
+        add(&mean);
+        let pair = Pair::from_blocks(&points[0], &mean);
+        let (lo, hi) = pair.ratio_interval(ALPHA);
+        run.push((pair.ratio().value, lo, hi));
+        let seen = seen_from(prepared.emitters(), eye, seed);
+        let glare = view::glare(&answers, prepared.emitters(), &seen, gaze, 3, &light, ALPHA).ugr;
+        run.push((glare.value.unwrap_or(f64::NAN), glare.lo, glare.hi));
+        run
+    };
+    let runs: Vec<Run> = (1..=seeds).into_par_iter().map(one).collect();
+    let mut csv = String::from("quantity,seeds,truth,sd_of_runs,mean_half_width,covered_percent\n");
+    let mut table = String::new();
+    for (index, name) in names.iter().enumerate() {
+        let values: Vec<f64> = runs.iter().map(|run| run[index].0).collect();
+        let truth = Estimate::from_blocks(&values);
+        let covered = runs.iter().filter(|run| run[index].1 <= truth.value && truth.value <= run[index].2).count();
+        let half = runs.iter().map(|run| 0.5 * (run[index].2 - run[index].1)).sum::<f64>() / seeds as f64;
+        let sd = truth.se * (seeds as f64).sqrt();
+        let percent = 100.0 * covered as f64 / seeds as f64;
+        writeln!(csv, "\"{name}\",{seeds},{},{sd},{half},{percent}", truth.value)?;
+        writeln!(table, "| {name} | {:.3} | {sd:.3} | {half:.3} | {percent:.1} % |", truth.value)?;
+    }
+    let text = format!(
+        "# Coverage of the 95 % intervals\n\n{seeds} seeds of scenes/office, {BLOCKS} blocks each, six quantities chosen beforehand. A nominal 95 % interval is accepted between 92.6 and 97.1 %.\nMade by `cargo run --release --example coverage {seeds}`.\n\n| quantity | truth | sd of runs | mean half width | covered |\n|---|---|---|---|---|\n{table}\nThe truth is the mean over all seeds; illuminances in lx, initial flux, all groups on.\n"
+    );
+    std::fs::create_dir_all("reports/coverage")?;
+    std::fs::write("reports/coverage/coverage.csv", csv)?;
+    std::fs::write("reports/coverage/README.md", &text)?;
+    println!("{text}");
+    Ok(())
+}

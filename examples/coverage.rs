@@ -27,10 +27,23 @@ type Run = Vec<(f64, f64, f64)>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let seeds: u64 = std::env::args().nth(1).map_or(Ok(1000), |text| text.parse())?;
-    let project = load(Path::new("scenes/office"), &LoadOptions::default()).map_err(|_| "scenes/office does not load")?;
+    let project = load(Path::new("scenes/office"), &LoadOptions::default())
+        .map_err(|_| "scenes/office does not load")?;
     let world = &project.worlds[0];
-    let planar = |point: DVec3, normal: DVec3| Receiver { point, lift: normal, kernels: vec![Kernel::Planar { normal }] };
-    let desk = rectangle(DVec3::new(1.59, 1.69, 0.75), DVec3::X * 1.6, DVec3::Y * 0.6, DVec3::Z, GridRule::En, 0.0, None)?;
+    let planar = |point: DVec3, normal: DVec3| Receiver {
+        point,
+        lift: normal,
+        kernels: vec![Kernel::Planar { normal }],
+    };
+    let desk = rectangle(
+        DVec3::new(1.59, 1.69, 0.75),
+        DVec3::X * 1.6,
+        DVec3::Y * 0.6,
+        DVec3::Z,
+        GridRule::En,
+        0.0,
+        None,
+    )?;
     let gaze = DVec3::Y;
     let eye = DVec3::new(4.0, 1.6, 1.2);
     let mut receivers = vec![
@@ -41,7 +54,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     receivers.extend(desk.points.iter().map(|point| planar(point.position, DVec3::Z)));
     let demand = Demand { receivers, rays: Vec::new(), flux: false };
-    let names = ["E floor, middle", "E floor, 5 cm from two walls", "E wall, beside the glass", "Ē desk", "U0 contrast, desk corner", "UGR"];
+    let names = [
+        "E floor, middle",
+        "E floor, 5 cm from two walls",
+        "E wall, beside the glass",
+        "Ē desk",
+        "U0 contrast, desk corner",
+        "UGR",
+    ];
     let light = weights(world, &project.light_scenes[0], &world.rooms[0], false);
     let one = |seed: u64| -> Run {
         let effort = Effort { patch_m2: Some(0.25), ..Effort::default() };
@@ -58,8 +78,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             add(&answers.total(row, &light));
         }
         let points: Vec<Vec<f64>> = (4..demand.rows()).map(|row| answers.total(row, &light)).collect();
-        let mean: Vec<f64> =
-            (0..BLOCKS as usize).map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64).collect();
+        let mean: Vec<f64> = (0..BLOCKS as usize)
+            .map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64)
+            .collect();
         add(&mean);
         let pair = Pair::from_blocks(&points[0], &mean);
         let (lo, hi) = pair.ratio_interval(ALPHA);
@@ -75,7 +96,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (index, name) in names.iter().enumerate() {
         let values: Vec<f64> = runs.iter().map(|run| run[index].0).collect();
         let truth = Estimate::from_blocks(&values);
-        let covered = runs.iter().filter(|run| run[index].1 <= truth.value && truth.value <= run[index].2).count();
+        let covered =
+            runs.iter().filter(|run| run[index].1 <= truth.value && truth.value <= run[index].2).count();
         let half = runs.iter().map(|run| 0.5 * (run[index].2 - run[index].1)).sum::<f64>() / seeds as f64;
         let sd = truth.se * (seeds as f64).sqrt();
         let percent = 100.0 * covered as f64 / seeds as f64;

@@ -3,8 +3,9 @@
 
 use crate::emitters::Emitters;
 use crate::measure::{Answers, flux};
-use crate::outcome::Bias;
+use crate::outcome::{Bias, Requirement};
 use crate::project::World;
+use crate::quantity::Quantity;
 use crate::{Method, Settings};
 
 pub(crate) fn add(
@@ -14,12 +15,15 @@ pub(crate) fn add(
     answers: &Answers,
     emitters: &Emitters,
 ) {
-    let mut note = |what: &str, effect: String| biases.push(Bias { what: what.into(), effect });
+    let mut note = |what: &str, effect: String, share: Option<f64>| {
+        biases.push(Bias { what: what.into(), effect, share });
+    };
     let scene = &world.scene;
     if settings.method == Method::Links && !scene.luminaires.is_empty() {
         note(
             "Unshadowed light of openings is integrated numerically.",
             format!("at most about {:e} of each luminaire's illuminance", crate::emitters::TOLERANCE),
+            Some(crate::emitters::TOLERANCE),
         );
     }
     let specular = (0..scene.mesh.triangles.len() as u32).any(|t| scene.bsdf(t).specular(1.0).is_some());
@@ -29,41 +33,52 @@ pub(crate) fn add(
             note(
                 "Light of point sources that reaches diffuse surfaces only by two or more specular reflections, or by curved mirrors, is left out.",
                 format!("{:.3} % of the luminous flux (measured)", 100.0 * share),
+                None,
             );
         }
         let glowing = emitters.mirrors.len();
         note(
             "Specular images of bright surfaces other than luminaires are part of the background, not glare sources.",
             format!("{glowing} specular planes; images of luminaires in them do count as glare sources"),
+            Some(0.0),
         );
     }
+    let rays: u64 = answers.sheets.iter().map(|sheet| sheet.counts.rays).sum();
     let cut: u64 = answers.sheets.iter().map(|sheet| sheet.counts.cut).sum();
     if cut > 0 {
-        note("Walks between perfect mirrors were cut.", format!("{cut} walks"));
+        note(
+            "Walks between perfect mirrors were cut.",
+            format!("{cut} walks"),
+            Some(cut as f64 / rays.max(1) as f64),
+        );
     }
     let escaped: u64 = answers.sheets.iter().map(|sheet| sheet.counts.escaped).sum();
-    let rays: u64 = answers.sheets.iter().map(|sheet| sheet.counts.rays).sum();
     if escaped > 0 {
         note(
             "Some rays left the scene: it is open, or its surfaces do not meet.",
             format!("{:.4} % of all rays; see the escaped flux", 100.0 * escaped as f64 / rays.max(1) as f64),
+            Some(0.0),
         );
     }
-    for luminaire in &scene.luminaires {
-        let kind = &luminaire.kind;
-        if let Some(rated) = kind.rated_flux_lm
-            && (kind.flux_lm / rated - 1.0).abs() > 0.02
-        {
-            let text = Bias {
-                what: format!(
-                    "Luminaire {}: the intensities integrate to {:.0} lm, rated are {rated:.0} lm; the intensities were used.",
-                    kind.name, kind.flux_lm
-                ),
-                effect: format!("{:+.1} % of its light", 100.0 * (kind.flux_lm / rated - 1.0)),
-            };
-            if !biases.contains(&text) {
-                biases.push(text);
+}
+
+/// What each omission may cost of a requirement's margin, one sentence each. Table values and
+/// declared ones do not come from solving and are at no such risk.
+pub(crate) fn risks(biases: &[Bias], requirement: &Requirement) -> Vec<String> {
+    let computed = !matches!(requirement.quantity, Quantity::Ugr | Quantity::ColourRendering);
+    let Some(margin) = requirement.margin.filter(|_| computed) else { return Vec::new() };
+    biases
+        .iter()
+        .filter(|bias| bias.share.is_none_or(|share| share > 0.0))
+        .map(|bias| {
+            let what = bias.what.trim_end_matches('.');
+            let margin = 100.0 * margin;
+            match bias.share {
+                Some(share) => {
+                    format!("{what}: up to {:.2} % of the value; the margin is {margin:.1} %", 100.0 * share)
+                }
+                None => format!("{what}: {}; the margin is {margin:.1} %", bias.effect),
             }
-        }
-    }
+        })
+        .collect()
 }

@@ -308,19 +308,23 @@ impl Total {
         let mut biases: Vec<outcome::Bias> = project
             .biases
             .iter()
-            .map(|what| outcome::Bias { what: what.clone(), effect: "not quantified".into() })
+            .map(|what| outcome::Bias { what: what.clone(), effect: "not quantified".into(), share: None })
             .collect();
         for bias in self.biases {
             if !biases.contains(&bias) {
                 biases.push(bias);
             }
         }
+        let mut requirements = self.requirements;
+        for requirement in &mut requirements {
+            requirement.at_risk = biases::risks(&biases, requirement);
+        }
         Outcome {
             info: project.info.clone(),
             rooms: self.rooms,
             norm,
             values: self.values,
-            requirements: self.requirements,
+            requirements,
             solver: Solver {
                 method: match settings.method {
                     Method::Links => "links",

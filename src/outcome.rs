@@ -48,12 +48,14 @@ pub struct NormOutcome {
 }
 
 /// A bias: what was done, and how large its effect is.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bias {
     /// What it is, one sentence.
     pub what: String,
     /// Its measured or bounded effect, in words with a figure, or "not quantified".
     pub effect: String,
+    /// Largest share of an illuminance that it may cost or add; `None` where that is not known.
+    pub share: Option<f64>,
 }
 
 /// How the answers were computed.

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{data, lambert, panel, planar, point_lamp, room, row, sheets};
+use common::{lambert, planar, point_lamp, room, row, sheets};
 use gershun::estimate::Estimate;
 use gershun::query::Demand;
 use gershun::scene::Scene;
@@ -105,51 +105,4 @@ fn box_rooms_match_the_radiosity_reference() {
         assert!(5.0 * se <= 0.015, "cannot resolve 1.5 %: se {se}");
         assert!(z <= 5.0, "{z} standard errors");
     }
-}
-
-#[test]
-fn scene_a_matches_the_peers() {
-    let Some(data) = data() else {
-        println!("skipped: no reference data");
-        return;
-    };
-    let text = std::fs::read_to_string(data.join("peers/A_wp_reference.csv")).unwrap();
-    let rows: Vec<Vec<f64>> =
-        text.lines().skip(1).map(|line| line.split(',').map(|f| f.parse().unwrap()).collect()).collect();
-    let mut mesh = room(DVec3::new(8.0, 5.0, 2.8));
-    let mut lamps = Vec::new();
-    let plate = mesh.add_surface("plates", 3, true);
-    for x in [4.0 / 3.0, 4.0, 20.0 / 3.0] {
-        for y in [1.25, 3.75] {
-            let c = DVec3::new(x, y, 2.799);
-            let at = |u: f64, v: f64| c + DVec3::new(0.3 * u, 0.3 * v, 0.0);
-            mesh.add_quad([at(-1., -1.), at(-1., 1.), at(1., 1.), at(1., -1.)], plate);
-            lamps.push(panel(3600.0, 0.6, c));
-        }
-    }
-    let materials =
-        vec![lambert("floor", 0.2), lambert("wall", 0.5), lambert("ceiling", 0.7), lambert("black", 0.0)];
-    let scene = Scene::new(mesh, materials, lamps).unwrap();
-    let receivers = rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect();
-    let demand = Demand { receivers, rays: vec![], flux: false };
-    let truth: Vec<(f64, f64)> = rows.iter().map(|r| (r[3], r[4])).collect();
-    let before = common::cpu_seconds();
-    let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Links, Effort::default(), 64);
-    println!(
-        "links: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
-        100.0 * rms,
-        100.0 * worst,
-        common::cpu_seconds() - before
-    );
-    assert!(z <= 5.0 && rms <= 0.01, "{z} standard errors, rms {rms}");
-    let before = common::cpu_seconds();
-    let [z, rms, worst, _] =
-        compare(&scene, &demand, &truth, Method::Path, Effort { paths: 256, ..Effort::default() }, 64);
-    println!(
-        "path: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
-        100.0 * rms,
-        100.0 * worst,
-        common::cpu_seconds() - before
-    );
-    assert!(z <= 5.0 && rms <= 0.015, "{z} standard errors, rms {rms}");
 }

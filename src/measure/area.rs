@@ -141,7 +141,8 @@ fn uniformity(blocks: &Blocks, alpha: f64) -> Gauged {
         hi = hi.min(pair.ratio_interval(corrected).1);
     }
     let (value, se, place) = least.expect("an area has points here");
-    Gauged { value: Ok(value), se, lo, hi, place: Some(place) }
+    // A minimum of illuminances lies between 0 and their mean; an interval says no more than that.
+    Gauged { value: Ok(value), se, lo: lo.clamp(0.0, 1.0), hi: hi.clamp(0.0, 1.0), place: Some(place) }
 }
 
 /// U_d = E_min / E_max, from the intervals of both at half the risk each (conservative).

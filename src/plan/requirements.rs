@@ -6,6 +6,9 @@ use crate::outcome::Bound;
 use crate::project::{AreaKind, CustomSubject, Norm, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
 
+/// Spacing-to-height ratio of luminaire catalogues, where no norm says otherwise.
+const CATALOGUE_SHR: f64 = 0.25;
+
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     if let Some(norm) = &project.norm {
         for (index, room) in world.rooms.iter().enumerate() {
@@ -14,7 +17,8 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
         }
     }
     for requirement in &world.requirements {
-        let (room, subject, subject_name) = subject(world, plan, requirement);
+        let shr = project.norm.as_ref().map_or(CATALOGUE_SHR, |norm| norm.standard.application.ugr_shr.value);
+        let (room, subject, subject_name) = subject(world, plan, requirement, shr);
         let light_scene = requirement.light_scene.unwrap_or(0);
         let bounds = [requirement.min.map(Bound::Min), requirement.max.map(Bound::Max)];
         for bound in bounds.into_iter().flatten() {
@@ -38,6 +42,7 @@ fn subject(
     world: &World,
     plan: &Plan,
     requirement: &crate::project::CustomRequirement,
+    shr: f64,
 ) -> (usize, Subject, String) {
     match requirement.subject {
         CustomSubject::Area(area) => {
@@ -59,7 +64,7 @@ fn subject(
         }
         CustomSubject::Room(room) => {
             let subject = match requirement.quantity {
-                Quantity::Ugr => Subject::UgrTable(1.0),
+                Quantity::Ugr => Subject::UgrTable(shr),
                 Quantity::ColourRendering => Subject::ColourRendering,
                 _ => Subject::Missing("a room has no grid of its own: name one of its areas".into()),
             };

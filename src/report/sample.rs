@@ -413,6 +413,7 @@ pub fn outcome() -> Outcome {
         biases: vec![Bias {
             what: "paths are cut after 24 reflections".into(),
             effect: "below 0.01 % of every value".into(),
+            share: Some(1e-4),
         }],
         inputs: vec![InputFile { path: "photometry/A & B.ldt".into(), sha256: "ab".repeat(32) }],
     }

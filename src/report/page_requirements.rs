@@ -76,12 +76,22 @@ fn verdict(lang: Lang, r: &Requirement) -> String {
     lines.extend(
         r.other_comparison.map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
     );
-    lines.extend(r.at_risk.iter().map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(risk))));
+    // All risks stand in result.json; here those of a close verdict, the rest is in the list of biases.
+    let close = r.margin.is_some_and(|margin| margin.abs() < CLOSE);
+    lines.extend(
+        r.at_risk
+            .iter()
+            .filter(|_| close)
+            .map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(risk))),
+    );
     for line in lines {
         put(&mut html, format_args!("<br/><span class=\"note\">{line}</span>"));
     }
     html
 }
+
+/// Relative margin below which the page says what may cost it.
+const CLOSE: f64 = 0.02;
 
 /// What the marks and symbols in the table mean.
 pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String {

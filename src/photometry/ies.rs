@@ -58,8 +58,9 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         planes.push(Plane { angle_deg: angle.value, cd });
     }
     if let Some((line, token)) = numbers.rest() {
-        let message = format!("text after the last intensity, from '{}': ignored", shortened(token));
-        findings.push(Finding::new("trailing-data", line, message));
+        let message = format!("text after the last intensity, from '{}'", shortened(token));
+        let consequence = "ignored; if angles were left out of the head, every intensity may be shifted";
+        findings.push(Finding::new("trailing-data", line, message, consequence));
     }
     let planes = expanded(planes, angles[0].line, &mut findings)?;
     let gammas = gammas.iter().map(|gamma| gamma.value).collect();
@@ -97,8 +98,10 @@ fn version(lines: &[&str], findings: &mut Vec<Finding>) -> Lm63Version {
     ];
     let found = known.iter().find(|(ending, _)| first.ends_with(ending)).map(|(_, version)| *version);
     found.unwrap_or_else(|| {
-        let message = format!("unknown edition '{}': read as LM-63-2002", shortened(first));
-        findings.push(Finding::new("unknown-edition", 1, message));
+        let message = format!("unknown edition '{}'", shortened(first));
+        let consequence =
+            "read as LM-63-2002; the opening and the ballast-lamp factor may mean something else";
+        findings.push(Finding::new("unknown-edition", 1, message, consequence));
         Lm63Version::Y2002
     })
 }
@@ -129,12 +132,15 @@ fn tilt_factor(
         factors.push(numbers.next(format_args!("tilt factor {k} of {pairs}"))?);
     }
     let factor = positive(factors[0], "the first tilt factor")?;
-    let message = format!(
-        "the lamp's flux depends on tilt; the first factor, {factor} at {}°, is applied: a luminaire mounted at \
-         another tilt gives a different flux",
-        angles[0]
-    );
-    findings.push(Finding::new("tilt", line, message));
+    let message =
+        format!("the lamp's flux depends on tilt; the first factor, {factor} at {}°, is applied", angles[0]);
+    let [low, high] = factors
+        .iter()
+        .fold([f64::INFINITY, 0.0], |[low, high], k| [low.min(k.value), f64::max(high, k.value)])
+        .map(|k| 100.0 * (k / factor - 1.0));
+    let consequence =
+        format!("mounted at another tilt, flux and illuminance differ by {low:+.0} % to {high:+.0} %");
+    findings.push(Finding::new("tilt", line, message, consequence));
     Ok(factor)
 }
 
@@ -159,17 +165,17 @@ fn expanded(planes: Vec<Plane>, line: usize, findings: &mut Vec<Finding>) -> Res
         let seam = spread([&planes[0], &planes[planes.len() - 1]]);
         if seam > 0.01 {
             let message = format!(
-                "the planes at 0° and 360° are one, but differ by {:.1} % of the largest intensity: \
-                 the one at 0° is used",
+                "the planes at 0° and 360° are one, but differ by {:.1} % of the largest intensity",
                 100.0 * seam
             );
-            findings.push(Finding::new("open-seam", line, message));
+            let consequence = "the one at 0° is used: illuminance on that side is uncertain by as much";
+            findings.push(Finding::new("open-seam", line, message, consequence));
         }
         return Ok(planes);
     }
     if is(first, 0.0) && last > 180.0 && last + 1.001 * step >= 360.0 && last < 360.0 {
-        let message = "the plane at 360° is missing: the one at 0° is used";
-        findings.push(Finding::new("open-seam", line, message));
+        let consequence = "the one at 0° is used; programs that do not close the circle lose a sector";
+        findings.push(Finding::new("open-seam", line, "the plane at 360° is missing", consequence));
         return Ok(planes);
     }
     let message = format!("horizontal angles run from {first}° to {last}°");

@@ -77,9 +77,11 @@ impl Head {
             return self.multiplier * self.ballast * ballast_lamp;
         }
         if version != Lm63Version::Y2019 && (ballast_lamp - 1.0).abs() > 1e-9 {
-            let message =
-                format!("the field after the ballast factor is {ballast_lamp}, expected 1: not applied");
-            findings.push(Finding::new("reserved-field", self.ballast_lamp.line, message));
+            let message = format!("the field after the ballast factor is {ballast_lamp}, expected 1");
+            let consequence = format!(
+                "not applied; where it is meant as a factor, every illuminance is {ballast_lamp} times as high"
+            );
+            findings.push(Finding::new("reserved-field", self.ballast_lamp.line, message, consequence));
         }
         self.multiplier * self.ballast
     }
@@ -102,11 +104,9 @@ impl Head {
             return Some(self.lamps * self.lumens);
         }
         if (self.lumens + 1.0).abs() > 1e-9 {
-            let message = format!(
-                "{} lamps of {} lm: read as absolute photometry (−1 lm); the candelas stand as they are",
-                self.lamps, self.lumens
-            );
-            findings.push(Finding::new("lamp-lumens", self.lumens_line, message));
+            let message = format!("{} lamps of {} lm", self.lamps, self.lumens);
+            let consequence = "read as absolute photometry (−1 lm): the candelas stand as they are";
+            findings.push(Finding::new("lamp-lumens", self.lumens_line, message, consequence));
         }
         None
     }

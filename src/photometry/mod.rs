@@ -16,12 +16,14 @@ mod ldt_head;
 mod numbers;
 mod opening;
 mod planes;
+mod symmetry;
 mod table;
 mod text;
 
 pub use distribution::{DistributionError, IntensityDistribution};
 pub use ies::Lm63Version;
 pub use opening::Opening;
+pub use symmetry::Symmetry;
 
 /// What a photometric file says, checked.
 #[derive(Clone, Debug)]
@@ -67,13 +69,27 @@ pub struct Finding {
     pub code: &'static str,
     /// Line of the file, from 1, where one line is at fault.
     pub line: Option<usize>,
-    /// What was found and what it means for the results.
+    /// What was found, with its values.
     pub message: String,
+    /// What follows for the results, estimated where it can be.
+    pub consequence: String,
 }
 
 impl Finding {
-    fn new(code: &'static str, line: impl Into<Option<usize>>, message: impl Into<String>) -> Self {
-        Self { code, line: line.into(), message: message.into() }
+    /// A finding at a line (`None`: the whole file).
+    pub fn new(
+        code: &'static str,
+        line: impl Into<Option<usize>>,
+        message: impl Into<String>,
+        consequence: impl Into<String>,
+    ) -> Self {
+        Self { code, line: line.into(), message: message.into(), consequence: consequence.into() }
+    }
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.message, self.consequence)
     }
 }
 
@@ -89,6 +105,8 @@ pub struct PhotometryError {
     pub message: String,
     /// What to do about it.
     pub hint: String,
+    /// Stable word as in [`Finding::code`], `unreadable`.
+    pub code: &'static str,
 }
 
 /// A parser's error before the file's name is known.
@@ -97,11 +115,16 @@ struct Fault {
     line: usize,
     message: String,
     hint: &'static str,
+    code: &'static str,
 }
 
 impl Fault {
     fn new(line: usize, message: impl Into<String>, hint: &'static str) -> Self {
-        Self { line, message: message.into(), hint }
+        Self { line, message: message.into(), hint, code: "unreadable" }
+    }
+
+    fn coded(self, code: &'static str) -> Self {
+        Self { code, ..self }
     }
 }
 
@@ -115,6 +138,7 @@ pub fn parse(bytes: &[u8], file_name: &str) -> Result<Photometry, PhotometryErro
         line: fault.line,
         message: fault.message,
         hint: fault.hint.to_owned(),
+        code: fault.code,
     })
 }
 

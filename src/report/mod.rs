@@ -1,6 +1,6 @@
 //! Files, tables and drawings for people and machines; the only code that writes files. Its one
-//! input is [`Outcome`], so equal outcomes give equal bytes: no clock, host, thread count or
-//! absolute path can enter.
+//! input is [`Outcome`] (for single photometric files [`crate::lamp`]'s data), so equal outcomes give
+//! equal bytes: no clock, host, thread count or absolute path can enter.
 
 mod canvas;
 pub mod csv;
@@ -8,6 +8,7 @@ mod folder;
 mod isolines;
 mod json;
 mod junit;
+pub mod lamp;
 mod markup;
 pub mod number;
 mod page;

@@ -264,6 +264,12 @@ pub const RULES: &[Rule] = &[
         "Harmless to read, but a sign that the file was edited or joined by hand.",
     ),
     note(
+        "resampled",
+        "Type A or B photometry was converted to type C.",
+        "Types A (headlamps) and B (floodlights) turn the goniometer about other axes. The intensities are \
+         interpolated onto a grid of type C, fine enough for the stated error.",
+    ),
+    note(
         "crlf",
         "Lines end in CR LF.",
         "LM-63 prescribes it and every DOS program writes it. It has no effect here; a few readers on other systems \
@@ -296,6 +302,7 @@ mod tests {
             include_str!("../photometry/findings.rs"),
             include_str!("../photometry/numbers.rs"),
             include_str!("../photometry/ies.rs"),
+            include_str!("../photometry/ies_goniometer.rs"),
             include_str!("../photometry/ies_head.rs"),
             include_str!("../photometry/ies_opening.rs"),
             include_str!("../photometry/ldt.rs"),

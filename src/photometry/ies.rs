@@ -1,7 +1,8 @@
-//! LM-63 (IES) of 1986 to 2019, type C. Its 0° plane lies *along* the luminaire (+x), its *width*
+//! LM-63 (IES) of 1986 to 2019, types A, B and C. Its 0° plane lies *along* the luminaire (+x), its *width*
 //! across it. Candelas are multiplied once each by multiplier, ballast factor and, up to 1995,
 //! ballast-lamp factor; later editions put other things into that field.
 
+use super::ies_goniometer::{Goniometer, resampled};
 use super::ies_head::Head;
 use super::ies_opening::opening;
 use super::numbers::{Comma, DAMAGED, Numbers, check_gamma_range, count, positive, shortened};
@@ -47,8 +48,10 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     let tilt = tilt_factor(lines[tilt_index], tilt_index + 1, &mut numbers, &mut findings)?;
     let head = Head::read(&mut numbers)?;
     let (n_gamma, n_plane) = head.counts(lines)?;
-    let gammas = numbers.angles("γ", n_gamma)?;
-    check_gamma_range(&gammas)?;
+    let gammas = numbers.angles(if head.goniometer == Goniometer::C { "γ" } else { "V" }, n_gamma)?;
+    if head.goniometer == Goniometer::C {
+        check_gamma_range(&gammas)?;
+    }
     let angles = numbers.angles("horizontal angle", n_plane)?;
     let factor = head.factor(version, &mut findings) * tilt;
     let data_line = numbers.line;
@@ -62,10 +65,16 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         let consequence = "ignored; if angles were left out of the head, every intensity may be shifted";
         findings.push(Finding::new("trailing-data", line, message, consequence));
     }
-    let planes = expanded(planes, angles[0].line, &mut findings)?;
-    let gammas = gammas.iter().map(|gamma| gamma.value).collect();
-    let distribution = close_circle(planes, gammas, 0.0)
-        .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?;
+    let distribution = if head.goniometer == Goniometer::C {
+        let planes = expanded(planes, angles[0].line, &mut findings)?;
+        let gammas = gammas.iter().map(|gamma| gamma.value).collect();
+        close_circle(planes, gammas, 0.0)
+            .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?
+    } else {
+        let (distribution, finding) = resampled(head.goniometer, &gammas, &angles, &planes)?;
+        findings.push(finding);
+        distribution
+    };
     let opening = opening(head.size_m()?, version, head.size_line, &mut findings);
     let lamp_flux_lm = head.lamp_flux_lm(&mut findings);
     Ok(Photometry {
@@ -286,7 +295,10 @@ pub(super) mod tests {
     #[test]
     fn damage_is_named() {
         assert_eq!(error("0 45 90", "0 45 40"), (7, "γ must rise, found 40° after 45°".to_owned()));
-        assert_eq!(error("3 2 1 1", "3 2 2 1"), (5, "type B photometry is not supported yet".to_owned()));
+        assert_eq!(
+            error("3 2 1 1", "3 2 4 1"),
+            (5, "photometric type 4, expected 1 (C), 2 (B) or 3 (A)".to_owned())
+        );
         assert_eq!(
             error("100, 40 0", "100 -1 0"),
             (11, "the intensity at 90°, γ 45° is negative: -1".to_owned())

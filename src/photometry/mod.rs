@@ -9,6 +9,7 @@ mod distribution;
 mod emission;
 mod findings;
 mod ies;
+mod ies_goniometer;
 mod ies_head;
 mod ies_opening;
 mod ldt;

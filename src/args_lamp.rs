@@ -17,7 +17,7 @@ Examples:
   gershun lamp info --format json catalogue/*.ldt > catalogue.json"
     )]
     Info {
-        /// Photometric files (LM-63, EULUMDAT)
+        /// Photometric files (LM-63, EULUMDAT, GLDF)
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
         /// What is printed
@@ -32,7 +32,7 @@ Examples:
   gershun explain flux-mismatch
   gershun lamp lint --format sarif *.ldt > photometry.sarif")]
     Lint {
-        /// Photometric files (LM-63, EULUMDAT)
+        /// Photometric files (LM-63, EULUMDAT, GLDF)
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
         /// What is printed
@@ -46,7 +46,7 @@ Examples:
   gershun lamp ugr-table panel.ldt
   gershun lamp ugr-table --shr 0.25 --format csv panel.ldt > ugr.csv")]
     UgrTable {
-        /// Photometric files (LM-63, EULUMDAT)
+        /// Photometric files (LM-63, EULUMDAT, GLDF)
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
         /// Spacing to height: 1 (CIE 190, GOST 33392), 0.25 (most catalogues) or another 1/n

@@ -3,6 +3,7 @@
 //! it; an LM-63 file's own 0° plane is C90.
 
 pub mod beam;
+pub mod convert;
 pub mod flux;
 pub mod info;
 pub mod lint;
@@ -15,7 +16,7 @@ pub mod ugr;
 pub use info::{Info, info};
 pub use rules::{RULES, Rule, Severity, rule};
 
-use crate::photometry::{Finding, Photometry, PhotometryError, parse};
+use crate::photometry::{Finding, Part, Photometry, PhotometryError, parse, unpack};
 
 /// One luminaire of a file, with everything that was found about it.
 #[derive(Clone, Debug)]
@@ -33,7 +34,16 @@ pub struct Lamp {
 /// # Errors
 /// Where the file cannot be used at all.
 pub fn read(bytes: &[u8], file: &str) -> Result<Vec<Lamp>, PhotometryError> {
-    Ok(vec![read_one(bytes, file)?])
+    let one = |part: &Part| {
+        let mut lamp = read_one(&part.bytes, &part.name)?;
+        if !part.emitters.is_empty() {
+            let message = format!("used by the emitters {}", part.emitters.join(", "));
+            let consequence = "the product may set another flux per emitter, which is not read";
+            lamp.findings.push(Finding::new("emitter", None, message, consequence));
+        }
+        Ok(lamp)
+    };
+    unpack(bytes, file)?.iter().map(one).collect()
 }
 
 fn read_one(bytes: &[u8], file: &str) -> Result<Lamp, PhotometryError> {

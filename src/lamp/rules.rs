@@ -270,6 +270,12 @@ pub const RULES: &[Rule] = &[
          interpolated onto a grid of type C, fine enough for the stated error.",
     ),
     note(
+        "emitter",
+        "The photometry is a part of a GLDF product.",
+        "product.xml assigns photometries to emitters and may rate each with another flux. The intensities of the \
+         photometric file are used as they are; set `flux` in the project where the product rates another.",
+    ),
+    note(
         "crlf",
         "Lines end in CR LF.",
         "LM-63 prescribes it and every DOS program writes it. It has no effect here; a few readers on other systems \
@@ -297,6 +303,7 @@ mod tests {
     fn rules_and_sources_name_the_same_codes() {
         let sources = [
             include_str!("lint.rs"),
+            include_str!("mod.rs"),
             include_str!("nodes.rs"),
             include_str!("../photometry/mod.rs"),
             include_str!("../photometry/findings.rs"),

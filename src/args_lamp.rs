@@ -56,6 +56,30 @@ Examples:
         #[arg(long, value_enum, default_value_t = TableFormat::Human)]
         format: TableFormat,
     },
+    /// Polar diagram as SVG: C0–C180 and C90–C270, cd and cd/klm, beam angles
+    #[command(after_help = "Example:
+  gershun lamp polar panel.ldt --out panel.svg")]
+    Polar {
+        /// Photometric file (LM-63, EULUMDAT, GLDF with one photometry)
+        file: PathBuf,
+        /// File to write [default: standard output]
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// LM-63 to EULUMDAT or back; prints what the new file does not hold
+    #[command(
+        after_help = "The formats are recognised by content (input) and extension (output: .ies or .ldt).
+The new file is read back: no stored intensity differs by more than 1e-6.
+
+Example:
+  gershun lamp convert panel.ldt panel.ies"
+    )]
+    Convert {
+        /// Photometric file (LM-63, EULUMDAT, GLDF with one photometry)
+        input: PathBuf,
+        /// File to write, .ies or .ldt
+        output: PathBuf,
+    },
 }
 
 /// Output of `lamp info`.

@@ -1,12 +1,13 @@
 //! Runs `gershun lamp …`. Files are read and examined in parallel; results keep the order in which
 //! the files were named.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use gershun::lamp::convert::Target;
 use gershun::lamp::{self, RULES, Severity, rules};
 use gershun::photometry::Finding;
 use gershun::project::{read_photometry, suggestion};
-use gershun::report::lamp as report;
+use gershun::report::{lamp as report, write_file};
 use rayon::prelude::*;
 
 use crate::args_lamp::{InfoFormat, Lamp, LintFormat, TableFormat};
@@ -17,6 +18,8 @@ pub fn run(command: &Lamp) -> u8 {
         Lamp::Info { files, format } => info(files, *format),
         Lamp::Lint { files, format } => lint(files, *format),
         Lamp::UgrTable { files, shr, format } => ugr_table(files, *shr, *format),
+        Lamp::Polar { file, out } => polar(file, out.as_deref()).unwrap_or_else(|error| complain(&error)),
+        Lamp::Convert { input, output } => convert(input, output).unwrap_or_else(|error| complain(&error)),
     }
 }
 
@@ -107,13 +110,47 @@ fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat) -> u8 {
     worst.max(printed)
 }
 
+fn read_only(path: &Path) -> Result<lamp::Lamp, String> {
+    let bytes = read_photometry(path).map_err(|error| error.to_string())?;
+    let lamps = lamp::read(&bytes, &path.display().to_string()).map_err(|error| error.to_string())?;
+    let names: Vec<&str> = lamps.iter().map(|lamp| lamp.file.as_str()).collect();
+    let several =
+        format!("{} photometries: {}\n  hint: unpack the one you need", names.len(), names.join(", "));
+    let [only] = <[lamp::Lamp; 1]>::try_from(lamps).map_err(|_| several)?;
+    Ok(only)
+}
+
+fn polar(file: &Path, out: Option<&Path>) -> Result<u8, String> {
+    let svg = report::polar(&read_only(file)?);
+    let Some(out) = out else {
+        return Ok(say(&svg));
+    };
+    write_file(out, svg.as_bytes()).map_err(|error| error.to_string())?;
+    Ok(COMPLIES)
+}
+
+fn convert(input: &Path, output: &Path) -> Result<u8, String> {
+    let extension = output.extension().unwrap_or_default().to_string_lossy();
+    let target = Target::of_extension(&extension).ok_or_else(|| {
+        format!("{}: unknown format \".{extension}\"\n  hint: name a file .ies or .ldt", output.display())
+    })?;
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(input, output) {
+        return Err(format!("{} would replace itself\n  hint: name another file", input.display()));
+    }
+    let lamp = read_only(input)?;
+    let converted = lamp::convert::convert(&lamp.photometry, target)
+        .map_err(|error| format!("{}: {error}", input.display()))?;
+    write_file(output, &converted.bytes).map_err(|error| error.to_string())?;
+    let told: Vec<String> = converted.dropped.iter().map(|what| format!("dropped: {what}\n")).collect();
+    Ok(say(&format!("{}\n{}", output.display(), told.concat())))
+}
+
 /// The explanation of a finding's code.
 pub fn explain(code: &str) -> u8 {
-    match report::explanation(code) {
-        Some(text) => say(&text),
-        None => {
-            let hint = suggestion(code, RULES.iter().map(|rule| rule.code));
-            complain(&format!("no finding has the code \"{code}\"\n  hint: {hint}"))
-        }
+    if let Some(text) = report::explanation(code) {
+        return say(&text);
     }
+    let hint = suggestion(code, RULES.iter().map(|rule| rule.code));
+    complain(&format!("no finding has the code \"{code}\"\n  hint: {hint}"))
 }

@@ -132,7 +132,7 @@ fn luminance(photometry: &Photometry) -> Option<Finding> {
 /// CR LF belongs to DOS and to LM-63's own text; it is reported because some readers keep the CR.
 fn line_ends(bytes: &[u8], format: Format) -> Option<Finding> {
     let count = |pattern: &[u8]| bytes.windows(pattern.len()).filter(|part| *part == pattern).count();
-    let (pairs, feeds) = (count(b"\r\n"), bytes.iter().filter(|byte| **byte == b'\n').count());
+    let (pairs, feeds) = (count(b"\r\n"), count(b"\n"));
     if pairs == 0 {
         return None;
     }
@@ -152,7 +152,7 @@ fn line_ends(bytes: &[u8], format: Format) -> Option<Finding> {
 
 fn encoding(bytes: &[u8]) -> Option<Finding> {
     let first = bytes.iter().position(|byte| *byte >= 0x80)?;
-    let line = bytes[..first].iter().filter(|byte| **byte == b'\n').count() + 1;
+    let line = bytes[..first].split(|byte| *byte == b'\n').count();
     let message = "a name holds characters beyond ASCII, whose encoding the format does not state";
     let consequence = "names may be shown wrongly, numbers are not affected";
     Some(Finding::new("encoding", line, message, consequence))

@@ -19,8 +19,8 @@ pub(super) fn check(photometry: &Photometry) -> Vec<Finding> {
     let peak_cd = distribution.max_intensity().0;
     let cd = |j: usize, i: usize| distribution.intensity_at(azimuths[j % (azimuths.len() - 1)], gammas[i]);
     let (mut spikes, mut gaps) = (Vec::new(), Vec::new());
-    for j in 0..planes {
-        for i in 1..gammas.len() - 1 {
+    for (j, azimuth_deg) in azimuths[..planes].iter().copied().enumerate() {
+        for (i, gamma_deg) in gammas.iter().copied().enumerate().take(gammas.len() - 1).skip(1) {
             let mut neighbours = vec![cd(j, i - 1), cd(j, i + 1)];
             if !rotational {
                 neighbours.extend([cd(j + planes - 1, i), cd(j + 1, i)]);
@@ -28,12 +28,7 @@ pub(super) fn check(photometry: &Photometry) -> Vec<Finding> {
             let (low, high) = neighbours
                 .iter()
                 .fold((f64::INFINITY, 0.0_f64), |(low, high), cd| (low.min(*cd), high.max(*cd)));
-            let place = Place {
-                azimuth_deg: azimuths[j],
-                gamma_deg: gammas[i],
-                cd: cd(j, i),
-                usual_cd: 0.5 * (low + high),
-            };
+            let place = Place { azimuth_deg, gamma_deg, cd: cd(j, i), usual_cd: 0.5 * (low + high) };
             // The step to the darkness behind a cut-off is no gap, a lone ray in it is a spike.
             if place.cd > SPIKE * high && place.cd > DIM * peak_cd {
                 spikes.push(place);

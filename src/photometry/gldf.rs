@@ -6,7 +6,7 @@ use std::io::{Cursor, Read};
 use roxmltree::{Document, Node};
 use zip::ZipArchive;
 
-use super::Fault;
+use super::{Fault, text};
 
 /// Largest product.xml and largest photometric file.
 const PART_BYTES: u64 = 16 << 20;
@@ -36,9 +36,8 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Vec<Part>, Fault> {
         return Err(fault(format!("{} entries, more than {MAX_ENTRIES}", archive.len())));
     }
     let product = read(&mut archive, "product.xml")?;
-    let text = String::from_utf8_lossy(&product);
-    let document = Document::parse(text.trim_start_matches('\u{feff}'))
-        .map_err(|error| fault(format!("product.xml: {error}")))?;
+    let text = text::decode(&product);
+    let document = Document::parse(&text).map_err(|error| fault(format!("product.xml: {error}")))?;
     let references = references(&document);
     if references.is_empty() {
         let hint = "only photometric files (ldc/eulumdat, ldc/ies) are read; get a container with photometry";

@@ -28,7 +28,7 @@ pub fn to_ldt(photometry: &Photometry) -> Vec<u8> {
     let lor = photometry.lor.unwrap_or(flux_lm / lamps_lm);
     let text = String::new;
     let mut lines: Vec<String> = vec![
-        name.clone(),
+        text(),
         kind.to_string(),
         isym.to_string(),
         planes.all_deg.len().to_string(),

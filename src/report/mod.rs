@@ -4,6 +4,7 @@
 
 mod canvas;
 pub mod csv;
+mod file;
 mod folder;
 mod isolines;
 mod json;
@@ -30,6 +31,7 @@ mod xml;
 
 use std::path::{Path, PathBuf};
 
+pub use file::write_file;
 pub use junit::junit;
 pub use sarif::sarif;
 pub use sentence::overall;

@@ -2,11 +2,13 @@
 
 mod json;
 mod lint;
+mod polar;
 mod text;
 mod ugr;
 
 pub use json::info as info_json;
 pub use lint::{explanation, human as lint_human, json as lint_json, sarif as lint_sarif};
+pub use polar::polar;
 pub use text::info_text;
 pub use ugr::{csv as ugr_csv, text as ugr_text};
 

@@ -133,17 +133,15 @@ fn scene_a_matches_the_peers() {
     let receivers = rows.iter().map(|r| planar(DVec3::new(r[0], r[1], r[2]), DVec3::Z)).collect();
     let demand = Demand { receivers, rays: vec![], flux: false };
     let truth: Vec<(f64, f64)> = rows.iter().map(|r| (r[3], r[4])).collect();
-    for blocks in [64] {
-        let effort = Effort::default();
-        let before = common::cpu_seconds();
-        let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Links, effort, blocks);
-        println!(
-            "{gather} {walks} {blocks}: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
-            100.0 * rms,
-            100.0 * worst,
-            common::cpu_seconds() - before
-        );
-    }
+    let (effort, blocks) = (Effort::default(), 64);
+    let before = common::cpu_seconds();
+    let [z, rms, worst, _] = compare(&scene, &demand, &truth, Method::Links, effort, blocks);
+    println!(
+        "{blocks} blocks: z {z:.2}, rms {:.3} %, worst {:.3} %, {:.2} CPU-s",
+        100.0 * rms,
+        100.0 * worst,
+        common::cpu_seconds() - before
+    );
     let before = common::cpu_seconds();
     let [z, rms, worst, _] =
         compare(&scene, &demand, &truth, Method::Path, Effort { paths: 256, ..Effort::default() }, 64);

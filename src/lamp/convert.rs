@@ -164,10 +164,10 @@ mod tests {
 
     /// Planes every 45° with γ 0, 45, 90, intensities by `cd(k)` of plane k.
     fn file(cd: impl Fn(u32) -> u32) -> String {
-        let planes: String = (0..=8).map(|k| format!("500 {} 0\n", cd(k % 8))).collect();
+        let planes = (0..=8).map(|k| format!("500 {} 0", cd(k % 8))).collect::<Vec<_>>().join("\n");
         format!(
             "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 9 1 2 0.3 1.2 0.05\n1 1 40\n0 45 90\n\
-             0 45 90 135 180 225 270 315 360\n{planes}"
+             0 45 90 135 180 225 270 315 360\n{planes}\n"
         )
     }
 

@@ -46,6 +46,16 @@ pub enum Command {
     },
     /// Print the JSON Schema of result.json
     Schema,
+    /// Photometric files: figures, faults, UGR tables
+    #[command(subcommand)]
+    Lamp(crate::args_lamp::Lamp),
+    /// Explain the code of a finding
+    #[command(after_help = "Example:
+  gershun explain flux-mismatch")]
+    Explain {
+        /// Code as printed in brackets, e.g. flux-mismatch
+        code: String,
+    },
     /// The norms that gershun knows
     #[command(subcommand)]
     Norm(Norm),

@@ -11,6 +11,7 @@ pub mod geometry;
 pub mod glare;
 pub mod grid;
 pub mod judge;
+pub mod lamp;
 pub mod luminaire;
 pub mod material;
 pub mod measure;

@@ -3,6 +3,8 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the one place that prints")]
 
 mod args;
+mod args_lamp;
+mod commands_lamp;
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -33,6 +35,8 @@ fn main() -> ExitCode {
         Command::Check(check) => run_checks(&check),
         Command::New { dir } => new_project(&dir),
         Command::Schema => say(report::schema()),
+        Command::Lamp(command) => commands_lamp::run(&command),
+        Command::Explain { code } => commands_lamp::explain(&code),
         Command::Norm(Norm::List) => list_norms(),
         Command::Norm(Norm::Show { name, row }) => show_norm(&name, row.as_deref()),
     };

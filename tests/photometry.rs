@@ -30,6 +30,7 @@ struct Expected {
     name: String,
     path: PathBuf,
     flux_lm: f64,
+    zonal_lm: Option<f64>,
     down_percent: f64,
     peak_cd: f64,
     zones_lm: Vec<f64>,
@@ -48,6 +49,7 @@ fn expected(data: &Path) -> Vec<Expected> {
             name: row[0].to_owned(),
             path: data.join(row[0].replacen(listed, here, 1)),
             flux_lm: number(12),
+            zonal_lm: row[13].parse().ok(),
             down_percent: number(14),
             peak_cd: number(15),
             zones_lm: row[16].split(';').map(|zone| zone.parse().expect("a number")).collect(),
@@ -71,7 +73,6 @@ fn off(value: f64, truth: f64) -> f64 {
 fn flux_peak_and_zones_of_every_file() {
     let Some(data) = data() else { return };
     let (mut worst_flux, mut worst_peak, mut worst_zone) = (0.0_f64, 0.0_f64, 0.0_f64);
-    let (mut flagged, mut covered) = (0, 0);
     let files = expected(&data);
     for file in &files {
         let lamp = photometry_of(file);
@@ -90,22 +91,74 @@ fn flux_peak_and_zones_of_every_file() {
         }
         let down = 100.0 * distribution.zonal_flux(0.0, 90.0).0 / flux;
         assert!((down - file.down_percent).abs() < 0.01, "{}: {down} % down", file.name);
-        let codes: Vec<&str> = lamp.findings.iter().map(|finding| finding.code).collect();
-        println!("{}: {codes:?}", file.name);
-        if !file.flags.is_empty() {
-            flagged += 1;
-            covered += usize::from(!codes.is_empty());
-        }
-        if file.flags.starts_with("sets=") {
-            assert!(codes.contains(&"lamp-sets"), "{}: {codes:?}", file.name);
-        }
     }
     println!(
-        "{} files: flux within {worst_flux:.1e}, peak within {worst_peak:.1e}, zones within {worst_zone:.1e} of the \
-         flux; {covered} of {flagged} flagged files have a finding",
+        "{} files: flux within {worst_flux:.1e}, peak within {worst_peak:.1e}, zones within {worst_zone:.1e} of the flux",
         files.len()
     );
     assert!(files.len() > 60, "the list has shrunk to {}", files.len());
+}
+
+/// Catches: the zonal rule replaced by another (midpoint zones miss by 3 lm), a flag of the list that
+/// no finding answers.
+#[test]
+fn zonal_rule_and_flags() {
+    let Some(data) = data() else { return };
+    let (mut worst, mut published, mut answered, mut open) = (0.0_f64, 0, 0, Vec::new());
+    for file in expected(&data) {
+        let bytes = fs::read(&file.path).expect("a listed file exists");
+        let lamps = gershun::lamp::read(&bytes, &file.name).unwrap_or_else(|error| panic!("{error}"));
+        if let Some(zonal_lm) = file.zonal_lm {
+            let info = gershun::lamp::info(&lamps[0]);
+            worst = worst.max((info.flux_zonal_lm - zonal_lm).abs());
+            published += 1;
+        }
+        let has = |code: &str| lamps[0].findings.iter().any(|finding| finding.code == code);
+        match file.flags.as_str() {
+            "" => {}
+            "CRLF" if has("crlf") => answered += 1,
+            sets if sets.starts_with("sets=") && has("lamp-sets") => answered += 1,
+            other => open.push(format!("{}: {other}", file.name)),
+        }
+    }
+    println!(
+        "zonal rule within {worst:.4} lm in {published} files; {answered} flags answered, open: {open:?}"
+    );
+    assert!(worst < 0.01 && published >= 20, "{worst} lm, {published} files");
+    assert!(open.is_empty() && answered >= 20, "{answered} answered, {open:?}");
+}
+
+/// Catches: digits lost, a plane under its mirror image, a quarter turn forgotten on the way from one
+/// format to the other and back.
+#[test]
+fn round_trip_keeps_every_intensity() {
+    use gershun::lamp::convert::{Target, convert};
+    let Some(data) = data() else { return };
+    let (mut worst, mut nodes) = (0.0_f64, 0);
+    for file in expected(&data) {
+        let first = photometry_of(&file);
+        let written = |photometry: &Photometry, target| {
+            let converted =
+                convert(photometry, target).unwrap_or_else(|error| panic!("{}: {error}", file.name));
+            parse(&converted.bytes, &file.name).unwrap_or_else(|error| panic!("{error}"))
+        };
+        let back = match first.format {
+            Format::Eulumdat => written(&written(&first, Target::Ies), Target::Ldt),
+            Format::Lm63 { .. } => written(&written(&first, Target::Ldt), Target::Ies),
+        };
+        let (azimuths, gammas) = first.distribution.grid().expect("a table");
+        for azimuth in azimuths {
+            for gamma in gammas {
+                let [a, b] = [&first, &back].map(|lamp| lamp.distribution.intensity_at(*azimuth, *gamma));
+                if a > 0.0 {
+                    worst = worst.max(off(b, a));
+                }
+                nodes += 1;
+            }
+        }
+    }
+    println!("round trip: {nodes} intensities within {worst:.1e}");
+    assert!(worst < 1e-6, "{worst}");
 }
 
 /// Catches: a luminance table turned by 90°, or sides of the opening left out. Agreement of 2.2 %

@@ -1,6 +1,8 @@
 //! Checks common to all formats. A finding never changes a number: it says what is odd and what
 //! follows for illuminance or glare.
 
+use std::f64::consts::TAU;
+
 use super::{Finding, Format, Opening, Photometry};
 
 /// All oddities that show in the finished distribution.
@@ -14,23 +16,25 @@ fn flux(photometry: &Photometry) -> Option<Finding> {
     let (rated, integrated) = (photometry.rated_flux_lm?, photometry.distribution.flux().0);
     let deviation = integrated / rated - 1.0;
     let odd = match photometry.format {
-        Format::Eulumdat => deviation.abs() > 0.02,
-        Format::Lm63 { .. } => deviation > 0.02,
+        Format::Eulumdat => deviation.abs(),
+        Format::Lm63 { .. } => deviation,
     };
-    let message = format!(
-        "the intensities add up to {integrated:.1} lm, the file states {rated:.1} lm ({:+.1} %): \
-         every illuminance differs by as much depending on which is right; set `flux` to choose",
-        100.0 * deviation
+    let message = format!("rated {rated:.0} lm, integrates to {integrated:.0} lm");
+    let consequence = format!(
+        "Ē is {:.1} % {} than the rated flux suggests; set `flux` to choose",
+        100.0 * deviation.abs(),
+        if deviation < 0.0 { "lower" } else { "higher" }
     );
-    odd.then(|| Finding::new("flux-mismatch", None, message))
+    let code = if odd > 0.10 { "flux-contradiction" } else { "flux-mismatch" };
+    (odd > 0.02).then(|| Finding::new(code, None, message, consequence))
 }
 
 fn luminous_area(photometry: &Photometry) -> Option<Finding> {
-    let horizontal = glam::DVec3::new(0.6, 0.0, -0.8);
-    let none = !(photometry.opening.projected_area_m2(horizontal) > 0.0);
-    let message = "no luminous area: the luminaire counts as a point, its luminance and glare are undefined; \
-                   set `area`";
-    none.then(|| Finding::new("zero-area", None, message))
+    let oblique = glam::DVec3::new(0.6, 0.0, -0.8);
+    let none = !(photometry.opening.projected_area_m2(oblique) > 0.0);
+    let consequence =
+        "the luminaire counts as a point: its luminance, UGR and glare are undefined; set `area`";
+    none.then(|| Finding::new("zero-area", None, "no luminous area", consequence))
 }
 
 fn nadir(photometry: &Photometry) -> Option<Finding> {
@@ -38,24 +42,38 @@ fn nadir(photometry: &Photometry) -> Option<Finding> {
     let first = *gammas.first().filter(|gamma| **gamma <= 0.0)?;
     let at_nadir = azimuths.iter().map(|azimuth| photometry.distribution.intensity_at(*azimuth, first));
     let (low, high) = at_nadir.fold((f64::INFINITY, 0.0_f64), |(low, high), cd| (low.min(cd), high.max(cd)));
-    let message = format!(
-        "γ = 0 is one direction, but its planes say {low:.1} to {high:.1} cd: \
-         the illuminance right below is uncertain by as much"
-    );
-    (high - low > 0.01 * high).then(|| Finding::new("unequal-nadir", None, message))
+    let message = format!("γ = 0 is one direction, but its planes say {low:.1} to {high:.1} cd");
+    let consequence =
+        format!("the illuminance right below is uncertain by {:.1} %", 100.0 * (high - low) / high);
+    (high - low > 0.01 * high).then(|| Finding::new("unequal-nadir", None, message, consequence))
 }
 
 fn covered_range(photometry: &Photometry) -> Option<Finding> {
-    let (_, gammas) = photometry.distribution.grid()?;
+    let distribution = &photometry.distribution;
+    let (azimuths, gammas) = distribution.grid()?;
     let (first, last) = (*gammas.first()?, *gammas.last()?);
+    // What the missing part would hold if the nearest measured value went on.
+    let lost = |gamma_deg: f64, from_deg: f64, to_deg: f64| {
+        let planes = &azimuths[..azimuths.len() - 1];
+        let sum: f64 = planes.iter().map(|azimuth| distribution.intensity_at(*azimuth, gamma_deg)).sum();
+        let solid_angle_sr = TAU * (from_deg.to_radians().cos() - to_deg.to_radians().cos());
+        100.0 * sum / planes.len() as f64 * solid_angle_sr / distribution.flux().0
+    };
     let starts_odd = first > 0.0 && (first - 90.0).abs() > 1e-6;
     if starts_odd {
-        let message = format!("γ starts at {first}°: the cone below it is taken as dark");
-        return Some(Finding::new("missing-nadir", None, message));
+        let consequence = format!(
+            "the cone below is taken as dark: up to about {:.1} % of the flux is missing, right under the luminaire",
+            lost(first, 0.0, first)
+        );
+        return Some(Finding::new("missing-nadir", None, format!("γ starts at {first}°"), consequence));
     }
     let ends_odd = (last - 90.0).abs() > 1e-6 && (last - 180.0).abs() > 1e-6;
-    let message = format!("γ ends at {last}°: directions beyond are taken as dark");
-    ends_odd.then(|| Finding::new("missing-range", None, message))
+    let end = if last < 90.0 { 90.0 } else { 180.0 };
+    let consequence = format!(
+        "directions beyond are taken as dark: up to about {:.1} % of the flux is missing",
+        lost(last, last, end)
+    );
+    ends_odd.then(|| Finding::new("missing-range", None, format!("γ ends at {last}°"), consequence))
 }
 
 fn is_flat_area(opening: Opening) -> bool {
@@ -69,22 +87,37 @@ fn horizon(photometry: &Photometry) -> Option<Finding> {
         azimuths.iter().map(|azimuth| distribution.intensity_at(*azimuth, 90.0)).fold(0.0, f64::max);
     let share = at_horizon / distribution.max_intensity().0;
     let message = format!(
-        "{:.1} % of the largest intensity leaves a flat opening edge-on (γ = 90°), where its projected \
-         area is 0: luminance and UGR near the horizon are overstated; luminous sides seem to be missing",
+        "{:.1} % of the largest intensity ({at_horizon:.1} cd) leaves a flat opening edge-on at γ = 90°",
         100.0 * share
     );
-    (is_flat_area(photometry.opening) && share > 0.005).then(|| Finding::new("horizon-light", None, message))
+    let nits = at_horizon / (photometry.opening.area_m2() * 85_f64.to_radians().cos());
+    let consequence = format!(
+        "its projected area is 0 there: luminance and UGR near the horizon are overstated, by some {nits:.0} cd/m² at \
+         85°; luminous sides seem to be missing"
+    );
+    (is_flat_area(photometry.opening) && share > 0.005)
+        .then(|| Finding::new("horizon-light", None, message, consequence))
 }
 
 fn uplight(photometry: &Photometry) -> Option<Finding> {
     let distribution = &photometry.distribution;
-    let share = distribution.zonal_flux(90.0, 180.0).0 / distribution.flux().0;
+    let up_lm = distribution.zonal_flux(90.0, 180.0).0;
+    let share = up_lm / distribution.flux().0;
     let message = format!(
-        "{:.1} % of the flux goes up although the opening is flat and faces down: its luminance seen from \
-         above is undefined, illuminance is not affected",
+        "{:.1} % of the flux ({up_lm:.0} lm) goes up although the opening is flat and faces down",
         100.0 * share
     );
-    (is_flat_area(photometry.opening) && share > 0.005).then(|| Finding::new("flat-uplight", None, message))
+    let consequence = if share < 0.05 {
+        format!(
+            "a flat opening cannot do that: {up_lm:.0} lm reach the ceiling that may be stray light of the measurement"
+        )
+    } else {
+        "the opening describes at most the lower part: luminance from above is undefined, and UGR attributes all light \
+         to that area; illuminance is not affected"
+            .to_owned()
+    };
+    (is_flat_area(photometry.opening) && share > 0.005)
+        .then(|| Finding::new("flat-uplight", None, message, consequence))
 }
 
 #[cfg(test)]
@@ -136,9 +169,10 @@ mod tests {
         lossy.rated_flux_lm = Some(2.0 * lossy.distribution.flux().0);
         assert!(codes(&lossy).is_empty());
         lossy.format = Format::Eulumdat;
-        assert_eq!(codes(&lossy), ["flux-mismatch"]);
+        assert_eq!(codes(&lossy), ["flux-contradiction"]);
+        assert!(check(&lossy)[0].consequence.starts_with("Ē is 50.0 % lower"));
         lossy.format = Format::Lm63 { version: Lm63Version::Y2002 };
-        lossy.rated_flux_lm = Some(0.5 * lossy.distribution.flux().0);
+        lossy.rated_flux_lm = Some(0.95 * lossy.distribution.flux().0);
         assert_eq!(codes(&lossy), ["flux-mismatch"]);
     }
 }

@@ -1,7 +1,8 @@
-//! LM-63 (IES) of 1986 to 2019, type C. Its 0° plane lies *along* the luminaire (+x), its *width*
+//! LM-63 (IES) of 1986 to 2019, types A, B and C. Its 0° plane lies *along* the luminaire (+x), its *width*
 //! across it. Candelas are multiplied once each by multiplier, ballast factor and, up to 1995,
 //! ballast-lamp factor; later editions put other things into that field.
 
+use super::ies_goniometer::{Goniometer, resampled};
 use super::ies_head::Head;
 use super::ies_opening::opening;
 use super::numbers::{Comma, DAMAGED, Numbers, check_gamma_range, count, positive, shortened};
@@ -47,8 +48,10 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     let tilt = tilt_factor(lines[tilt_index], tilt_index + 1, &mut numbers, &mut findings)?;
     let head = Head::read(&mut numbers)?;
     let (n_gamma, n_plane) = head.counts(lines)?;
-    let gammas = numbers.angles("γ", n_gamma)?;
-    check_gamma_range(&gammas)?;
+    let gammas = numbers.angles(if head.goniometer == Goniometer::C { "γ" } else { "V" }, n_gamma)?;
+    if head.goniometer == Goniometer::C {
+        check_gamma_range(&gammas)?;
+    }
     let angles = numbers.angles("horizontal angle", n_plane)?;
     let factor = head.factor(version, &mut findings) * tilt;
     let data_line = numbers.line;
@@ -58,13 +61,20 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         planes.push(Plane { angle_deg: angle.value, cd });
     }
     if let Some((line, token)) = numbers.rest() {
-        let message = format!("text after the last intensity, from '{}': ignored", shortened(token));
-        findings.push(Finding::new("trailing-data", line, message));
+        let message = format!("text after the last intensity, from '{}'", shortened(token));
+        let consequence = "ignored; if angles were left out of the head, every intensity may be shifted";
+        findings.push(Finding::new("trailing-data", line, message, consequence));
     }
-    let planes = expanded(planes, angles[0].line, &mut findings)?;
-    let gammas = gammas.iter().map(|gamma| gamma.value).collect();
-    let distribution = close_circle(planes, gammas, 0.0)
-        .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?;
+    let distribution = if head.goniometer == Goniometer::C {
+        let planes = expanded(planes, angles[0].line, &mut findings)?;
+        let gammas = gammas.iter().map(|gamma| gamma.value).collect();
+        close_circle(planes, gammas, 0.0)
+            .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?
+    } else {
+        let (distribution, finding) = resampled(head.goniometer, &gammas, &angles, &planes)?;
+        findings.push(finding);
+        distribution
+    };
     let opening = opening(head.size_m()?, version, head.size_line, &mut findings);
     let lamp_flux_lm = head.lamp_flux_lm(&mut findings);
     Ok(Photometry {
@@ -97,8 +107,10 @@ fn version(lines: &[&str], findings: &mut Vec<Finding>) -> Lm63Version {
     ];
     let found = known.iter().find(|(ending, _)| first.ends_with(ending)).map(|(_, version)| *version);
     found.unwrap_or_else(|| {
-        let message = format!("unknown edition '{}': read as LM-63-2002", shortened(first));
-        findings.push(Finding::new("unknown-edition", 1, message));
+        let message = format!("unknown edition '{}'", shortened(first));
+        let consequence =
+            "read as LM-63-2002; the opening and the ballast-lamp factor may mean something else";
+        findings.push(Finding::new("unknown-edition", 1, message, consequence));
         Lm63Version::Y2002
     })
 }
@@ -129,12 +141,15 @@ fn tilt_factor(
         factors.push(numbers.next(format_args!("tilt factor {k} of {pairs}"))?);
     }
     let factor = positive(factors[0], "the first tilt factor")?;
-    let message = format!(
-        "the lamp's flux depends on tilt; the first factor, {factor} at {}°, is applied: a luminaire mounted at \
-         another tilt gives a different flux",
-        angles[0]
-    );
-    findings.push(Finding::new("tilt", line, message));
+    let message =
+        format!("the lamp's flux depends on tilt; the first factor, {factor} at {}°, is applied", angles[0]);
+    let [low, high] = factors
+        .iter()
+        .fold([f64::INFINITY, 0.0], |[low, high], k| [low.min(k.value), f64::max(high, k.value)])
+        .map(|k| 100.0 * (k / factor - 1.0));
+    let consequence =
+        format!("mounted at another tilt, flux and illuminance differ by {low:+.0} % to {high:+.0} %");
+    findings.push(Finding::new("tilt", line, message, consequence));
     Ok(factor)
 }
 
@@ -159,17 +174,17 @@ fn expanded(planes: Vec<Plane>, line: usize, findings: &mut Vec<Finding>) -> Res
         let seam = spread([&planes[0], &planes[planes.len() - 1]]);
         if seam > 0.01 {
             let message = format!(
-                "the planes at 0° and 360° are one, but differ by {:.1} % of the largest intensity: \
-                 the one at 0° is used",
+                "the planes at 0° and 360° are one, but differ by {:.1} % of the largest intensity",
                 100.0 * seam
             );
-            findings.push(Finding::new("open-seam", line, message));
+            let consequence = "the one at 0° is used: illuminance on that side is uncertain by as much";
+            findings.push(Finding::new("open-seam", line, message, consequence));
         }
         return Ok(planes);
     }
     if is(first, 0.0) && last > 180.0 && last + 1.001 * step >= 360.0 && last < 360.0 {
-        let message = "the plane at 360° is missing: the one at 0° is used";
-        findings.push(Finding::new("open-seam", line, message));
+        let consequence = "the one at 0° is used; programs that do not close the circle lose a sector";
+        findings.push(Finding::new("open-seam", line, "the plane at 360° is missing", consequence));
         return Ok(planes);
     }
     let message = format!("horizontal angles run from {first}° to {last}°");
@@ -280,7 +295,10 @@ pub(super) mod tests {
     #[test]
     fn damage_is_named() {
         assert_eq!(error("0 45 90", "0 45 40"), (7, "γ must rise, found 40° after 45°".to_owned()));
-        assert_eq!(error("3 2 1 1", "3 2 2 1"), (5, "type B photometry is not supported yet".to_owned()));
+        assert_eq!(
+            error("3 2 1 1", "3 2 4 1"),
+            (5, "photometric type 4, expected 1 (C), 2 (B) or 3 (A)".to_owned())
+        );
         assert_eq!(
             error("100, 40 0", "100 -1 0"),
             (11, "the intensity at 90°, γ 45° is negative: -1".to_owned())

@@ -1,6 +1,7 @@
 //! The 13 numbers between LM-63's tilt data and its angles. The field after the ballast factor is
 //! a factor up to 1995, reserved in 2002 and the kind of the file in 2019.
 
+use super::ies_goniometer::Goniometer;
 use super::numbers::{DAMAGED, MAX_VALUES, Number, Numbers, count, positive};
 use super::{Fault, Finding, Lm63Version};
 
@@ -14,6 +15,7 @@ pub(super) struct Head {
     multiplier: f64,
     n_gamma: Number,
     n_plane: Number,
+    pub(super) goniometer: Goniometer,
     units: f64,
     width: f64,
     length: f64,
@@ -32,7 +34,7 @@ impl Head {
         let n_gamma = numbers.next("the number of vertical angles")?;
         let n_plane = numbers.next("the number of horizontal angles")?;
         let kind = numbers.next("the photometric type")?;
-        require_type_c(kind)?;
+        let goniometer = goniometer(kind)?;
         let units = numbers.next("the units of length")?;
         let width = numbers.next("the luminous width")?;
         let length = numbers.next("the luminous length")?.value;
@@ -47,6 +49,7 @@ impl Head {
             multiplier,
             n_gamma,
             n_plane,
+            goniometer,
             units: units.value,
             width: width.value,
             length,
@@ -77,9 +80,11 @@ impl Head {
             return self.multiplier * self.ballast * ballast_lamp;
         }
         if version != Lm63Version::Y2019 && (ballast_lamp - 1.0).abs() > 1e-9 {
-            let message =
-                format!("the field after the ballast factor is {ballast_lamp}, expected 1: not applied");
-            findings.push(Finding::new("reserved-field", self.ballast_lamp.line, message));
+            let message = format!("the field after the ballast factor is {ballast_lamp}, expected 1");
+            let consequence = format!(
+                "not applied; where it is meant as a factor, every illuminance is {ballast_lamp} times as high"
+            );
+            findings.push(Finding::new("reserved-field", self.ballast_lamp.line, message, consequence));
         }
         self.multiplier * self.ballast
     }
@@ -102,23 +107,22 @@ impl Head {
             return Some(self.lamps * self.lumens);
         }
         if (self.lumens + 1.0).abs() > 1e-9 {
-            let message = format!(
-                "{} lamps of {} lm: read as absolute photometry (−1 lm); the candelas stand as they are",
-                self.lamps, self.lumens
-            );
-            findings.push(Finding::new("lamp-lumens", self.lumens_line, message));
+            let message = format!("{} lamps of {} lm", self.lamps, self.lumens);
+            let consequence = "read as absolute photometry (−1 lm): the candelas stand as they are";
+            findings.push(Finding::new("lamp-lumens", self.lumens_line, message, consequence));
         }
         None
     }
 }
 
-fn require_type_c(kind: Number) -> Result<(), Fault> {
-    let message = match kind.value {
-        1.0 => return Ok(()),
-        2.0 => "type B photometry is not supported yet".to_owned(),
-        3.0 => "type A photometry is not supported yet".to_owned(),
-        other => format!("photometric type {other}, expected 1 (C), 2 (B) or 3 (A)"),
-    };
-    let hint = "ask the manufacturer for type C photometry, or convert the file with its photometric tool";
-    Err(Fault::new(kind.line, message, hint))
+fn goniometer(kind: Number) -> Result<Goniometer, Fault> {
+    match kind.value {
+        1.0 => Ok(Goniometer::C),
+        2.0 => Ok(Goniometer::B),
+        3.0 => Ok(Goniometer::A),
+        other => {
+            let message = format!("photometric type {other}, expected 1 (C), 2 (B) or 3 (A)");
+            Err(Fault::new(kind.line, message, DAMAGED))
+        }
+    }
 }

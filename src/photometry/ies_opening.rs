@@ -62,9 +62,10 @@ pub(super) fn opening(
     if let Some(how) = approximated {
         let message = format!(
             "luminous opening {w:.3} × {l:.3} × {h:.3} m (width, length, height) is taken as the nearest known shape, \
-             {how}: luminance and UGR are approximate, illuminance is not affected"
+             {how}"
         );
-        findings.push(Finding::new("opening-approximated", line, message));
+        let consequence = "luminance and UGR are approximate, illuminance is not affected";
+        findings.push(Finding::new("opening-approximated", line, message, consequence));
     }
     opening
 }

@@ -56,9 +56,9 @@ impl Head<'_> {
         if let Some(size_mm) = self.optional(line).filter(|size| *size >= 0.0) {
             return size_mm * MM;
         }
-        let message =
-            format!("'{}' is no size in mm: taken as 0, which lowers the luminous area", self.text(line));
-        self.findings.push(Finding::new("bad-size", line, message));
+        let message = format!("'{}' is no size in mm", self.text(line));
+        let consequence = "taken as 0, which makes the luminous area smaller and its luminance higher";
+        self.findings.push(Finding::new("bad-size", line, message, consequence));
         0.0
     }
 
@@ -69,6 +69,7 @@ impl Head<'_> {
         if !(length_m > 0.0) {
             return Opening::Point;
         }
+        self.check_housing(length_m, width_m);
         if width_m > 0.0 {
             return Opening::Rect {
                 length_m,
@@ -80,6 +81,40 @@ impl Head<'_> {
         Opening::Disc { diameter_m: length_m, height_m: 0.25 * (c0 + c90 + c180 + c270) }
     }
 
+    /// An area that is larger than the luminaire, or that fits only when turned by 90°.
+    fn check_housing(&mut self, length_m: f64, width_m: f64) {
+        // Rounding to a centimetre is common.
+        const SLACK_M: f64 = 0.01;
+        let housing = [13, 14].map(|line| self.optional(line).filter(|size_mm| *size_mm > 0.0));
+        let Some(housing_length_m) = housing[0].map(|size_mm| size_mm * MM) else {
+            return;
+        };
+        // A width of 0 is a round luminaire or a round area.
+        let housing_width_m = housing[1].map_or(housing_length_m, |size_mm| size_mm * MM);
+        let width_m = if width_m > 0.0 { width_m } else { length_m };
+        let fits = |length: f64, width: f64| {
+            length <= housing_length_m + SLACK_M && width <= housing_width_m + SLACK_M
+        };
+        if fits(length_m, width_m) {
+            return;
+        }
+        let message = format!(
+            "the luminous area of {length_m:.3} × {width_m:.3} m lies beyond the luminaire of {housing_length_m:.3} × \
+             {housing_width_m:.3} m (length × width)"
+        );
+        if fits(width_m, length_m) {
+            let consequence = "it fits when turned by 90°: C0 and C90 are swapped in the dimensions or in the \
+                               intensities, so luminance and UGR belong to the other direction of view";
+            self.findings.push(Finding::new("swapped-dimensions", 16, message, consequence));
+            return;
+        }
+        let excess = length_m * width_m / (housing_length_m * housing_width_m).max(1e-12);
+        let consequence = format!(
+            "if the luminaire's size is right, the luminance is up to {excess:.1} times as high as computed"
+        );
+        self.findings.push(Finding::new("area-beyond-housing", 16, message, consequence));
+    }
+
     pub(super) fn lamps(&mut self) -> Result<Lamps, Fault> {
         let n_sets = count(self.required(26, "the number of lamp sets")?, "lamp sets", 1)?;
         let end = HEAD_LINES.saturating_add(n_sets.saturating_mul(SET_LINES));
@@ -89,12 +124,13 @@ impl Head<'_> {
         if n_sets > 1 {
             let first = HEAD_LINES + 1;
             let message = format!(
-                "{n_sets} lamp sets: the first is used ('{}', {} lm, {} W); set `flux` for another",
+                "{n_sets} lamp sets, of which the first is used ('{}', {} lm, {} W)",
                 self.text(first + 1),
                 self.text(first + 2),
                 self.text(first + 5)
             );
-            self.findings.push(Finding::new("lamp-sets", first, message));
+            let consequence = self.other_sets(n_sets);
+            self.findings.push(Finding::new("lamp-sets", first, message, consequence));
         }
         let absolute = self.required(27, "the number of lamps")?.value < 0.0;
         let flux = self.required(29, "the luminous flux of the lamps")?;
@@ -105,11 +141,9 @@ impl Head<'_> {
             return Err(Fault::new(flux.line, message, hint));
         }
         if self.optional(25).is_some_and(|tilt| tilt.abs() > 0.0) {
-            let message = format!(
-                "measured at a tilt of {}°: not turned back, aim the luminaire yourself",
-                self.text(25)
-            );
-            self.findings.push(Finding::new("tilt", 25, message));
+            let message = format!("measured at a tilt of {}°", self.text(25));
+            let consequence = "not turned back: the beam points elsewhere unless you aim the luminaire";
+            self.findings.push(Finding::new("tilt", 25, message, consequence));
         }
         Ok(Lamps {
             flux_lm: flux.value,
@@ -121,12 +155,27 @@ impl Head<'_> {
         })
     }
 
+    /// What choosing another set would change.
+    fn other_sets(&self, n_sets: usize) -> String {
+        let flux = |set: usize| self.optional(HEAD_LINES + set * SET_LINES + 3).filter(|lm| *lm > 0.0);
+        let used = flux(0).unwrap_or_default();
+        let others: Vec<f64> = (1..n_sets).filter_map(flux).collect();
+        let [low, high] =
+            others.iter().fold([f64::INFINITY, 0.0], |[low, high], lm| [low.min(*lm), lm.max(high)]);
+        if !(used > 0.0 && high > 0.0) {
+            return "another set gives another flux; set `flux` for it".to_owned();
+        }
+        let [low, high] = [low, high].map(|lm| 100.0 * (lm / used - 1.0));
+        format!("another set changes every illuminance by {low:+.0} % to {high:+.0} %; set `flux` for it")
+    }
+
     fn conversion(&mut self) -> f64 {
         if let Some(factor) = self.optional(24).filter(|factor| *factor > 0.0) {
             return factor;
         }
-        let message = format!("conversion factor '{}': taken as 1", self.text(24));
-        self.findings.push(Finding::new("conversion-factor", 24, message));
+        let message = format!("conversion factor '{}'", self.text(24));
+        let consequence = "taken as 1: every illuminance is wrong by the factor that was meant";
+        self.findings.push(Finding::new("conversion-factor", 24, message, consequence));
         1.0
     }
 
@@ -137,10 +186,11 @@ impl Head<'_> {
         if rotational && spread > 0.02 {
             let message = format!(
                 "line 2 declares symmetry about the vertical axis, but the planes differ by {:.0} % of the largest \
-                 intensity: the planes are used, so the luminaire's rotation matters",
+                 intensity",
                 100.0 * spread
             );
-            self.findings.push(Finding::new("asymmetry", 2, message));
+            let consequence = "the planes are used, so the luminaire's rotation matters";
+            self.findings.push(Finding::new("asymmetry", 2, message, consequence));
         }
     }
 
@@ -150,11 +200,14 @@ impl Head<'_> {
         };
         let computed = 100.0 * distribution.zonal_flux(0.0, 90.0).0 / distribution.flux().0;
         if (stated - computed).abs() > 2.0 {
-            let message = format!(
-                "{stated} % of the flux goes down as stated, {computed:.1} % by the intensities: the intensities are \
-                 used; check that the luminaire is not upside down"
+            let message =
+                format!("{stated} % of the flux goes down as stated, {computed:.1} % by the intensities");
+            let consequence = format!(
+                "the intensities are used: direct illuminance is {:+.0} % against the statement; check that the \
+                 luminaire is not upside down",
+                100.0 * (computed / stated.max(1.0) - 1.0)
             );
-            self.findings.push(Finding::new("down-share", 22, message));
+            self.findings.push(Finding::new("down-share", 22, message, consequence));
         }
     }
 

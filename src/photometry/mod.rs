@@ -8,20 +8,29 @@
 mod distribution;
 mod emission;
 mod findings;
+mod gldf;
 mod ies;
+mod ies_goniometer;
 mod ies_head;
 mod ies_opening;
+mod ies_write;
 mod ldt;
 mod ldt_head;
+mod ldt_write;
 mod numbers;
 mod opening;
 mod planes;
+mod symmetry;
 mod table;
 mod text;
+mod written;
 
 pub use distribution::{DistributionError, IntensityDistribution};
 pub use ies::Lm63Version;
+pub use ies_write::to_ies;
+pub use ldt_write::to_ldt;
 pub use opening::Opening;
+pub use symmetry::Symmetry;
 
 /// What a photometric file says, checked.
 #[derive(Clone, Debug)]
@@ -67,13 +76,27 @@ pub struct Finding {
     pub code: &'static str,
     /// Line of the file, from 1, where one line is at fault.
     pub line: Option<usize>,
-    /// What was found and what it means for the results.
+    /// What was found, with its values.
     pub message: String,
+    /// What follows for the results, estimated where it can be.
+    pub consequence: String,
 }
 
 impl Finding {
-    fn new(code: &'static str, line: impl Into<Option<usize>>, message: impl Into<String>) -> Self {
-        Self { code, line: line.into(), message: message.into() }
+    /// A finding at a line (`None`: the whole file).
+    pub fn new(
+        code: &'static str,
+        line: impl Into<Option<usize>>,
+        message: impl Into<String>,
+        consequence: impl Into<String>,
+    ) -> Self {
+        Self { code, line: line.into(), message: message.into(), consequence: consequence.into() }
+    }
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.message, self.consequence)
     }
 }
 
@@ -89,6 +112,8 @@ pub struct PhotometryError {
     pub message: String,
     /// What to do about it.
     pub hint: String,
+    /// Stable word as in [`Finding::code`], `unreadable`.
+    pub code: &'static str,
 }
 
 /// A parser's error before the file's name is known.
@@ -97,25 +122,75 @@ struct Fault {
     line: usize,
     message: String,
     hint: &'static str,
+    code: &'static str,
 }
 
 impl Fault {
     fn new(line: usize, message: impl Into<String>, hint: &'static str) -> Self {
-        Self { line, message: message.into(), hint }
+        Self { line, message: message.into(), hint, code: "unreadable" }
+    }
+
+    fn coded(self, code: &'static str) -> Self {
+        Self { code, ..self }
     }
 }
 
-/// Reads LM-63 or EULUMDAT, recognised by content; `file_name` appears in messages only.
+/// One photometric file, by itself or out of a container.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The file's name, for a part of a container followed by `/` and the path within.
+    pub name: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// Emitters of the container's product that use it.
+    pub emitters: Vec<String>,
+}
+
+/// The photometric files in `bytes`: itself, or those of a GLDF container.
 ///
 /// # Errors
-/// When the bytes are neither format, or damaged, or describe no usable distribution.
+/// A container that is damaged or names no photometry.
+pub fn unpack(bytes: &[u8], file_name: &str) -> Result<Vec<Part>, PhotometryError> {
+    if !bytes.starts_with(b"PK") {
+        return Ok(vec![Part { name: file_name.to_owned(), bytes: bytes.to_vec(), emitters: Vec::new() }]);
+    }
+    let parts = gldf::parts(bytes).map_err(|fault| named(fault, file_name))?;
+    let part = |part: gldf::Part| Part {
+        name: format!("{file_name}/{}", part.name),
+        bytes: part.bytes,
+        emitters: part.emitters,
+    };
+    Ok(parts.into_iter().map(part).collect())
+}
+
+/// Reads LM-63, EULUMDAT or a GLDF container with one photometry, recognised by content;
+/// `file_name` appears in messages only.
+///
+/// # Errors
+/// When the bytes are none of these, or damaged, or describe no usable distribution, or a container
+/// holds several photometries.
 pub fn parse(bytes: &[u8], file_name: &str) -> Result<Photometry, PhotometryError> {
-    parse_content(bytes).map_err(|fault| PhotometryError {
+    if !bytes.starts_with(b"PK") {
+        return parse_content(bytes).map_err(|fault| named(fault, file_name));
+    }
+    match &unpack(bytes, file_name)?[..] {
+        [only] => parse_content(&only.bytes).map_err(|fault| named(fault, &only.name)),
+        several => {
+            let names: Vec<&str> = several.iter().map(|part| part.name.as_str()).collect();
+            let message = format!("{} photometries: {}", several.len(), names.join(", "));
+            Err(named(Fault::new(1, message, "unpack the one you need and name it"), file_name))
+        }
+    }
+}
+
+fn named(fault: Fault, file_name: &str) -> PhotometryError {
+    PhotometryError {
         file: file_name.to_owned(),
         line: fault.line,
         message: fault.message,
         hint: fault.hint.to_owned(),
-    })
+        code: fault.code,
+    }
 }
 
 fn parse_content(bytes: &[u8]) -> Result<Photometry, Fault> {
@@ -124,8 +199,8 @@ fn parse_content(bytes: &[u8]) -> Result<Photometry, Fault> {
     if text.trim().is_empty() {
         return Err(Fault::new(1, "the file is empty", EXPORT_AGAIN));
     }
-    if bytes.starts_with(b"PK") || text.contains('\0') {
-        let hint = "a GLDF or ULD container must be unpacked: give the .ies or .ldt inside";
+    if text.contains('\0') {
+        let hint = "a ULD container must be unpacked: give the .ies or .ldt inside";
         return Err(Fault::new(1, "this is a binary file", hint));
     }
     let lines: Vec<&str> = text.lines().collect();

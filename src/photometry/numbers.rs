@@ -75,7 +75,7 @@ impl<'a> Numbers<'a> {
             if let Some(previous) = angles.last().filter(|previous| !(next.value > previous.value)) {
                 let message = format!("{name} must rise, found {}° after {}°", next.value, previous.value);
                 let hint = "check the counts of angles in the file's head, and the angles themselves";
-                return Err(Fault::new(next.line, message, hint));
+                return Err(Fault::new(next.line, message, hint).coded("angle-order"));
             }
             angles.push(next);
         }
@@ -90,7 +90,7 @@ impl<'a> Numbers<'a> {
             if intensity.value < 0.0 {
                 let message =
                     format!("the intensity at {name}, γ {}° is negative: {}", gamma.value, intensity.value);
-                return Err(Fault::new(intensity.line, message, DAMAGED));
+                return Err(Fault::new(intensity.line, message, DAMAGED).coded("negative-intensity"));
             }
             plane.push(intensity.value * factor);
         }

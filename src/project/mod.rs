@@ -4,6 +4,7 @@
 mod choices;
 mod context;
 mod diagnostics;
+mod photometric;
 mod read;
 mod resolve;
 // The structs of the schema are described by the project file's own documentation.
@@ -16,6 +17,7 @@ use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
 pub use diagnostics::{Diagnostic, suggestion};
+pub use photometric::{ReadError, read_photometry};
 
 use crate::geometry::trace::Simd;
 use crate::grid::GridRule;

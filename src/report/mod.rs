@@ -1,13 +1,15 @@
 //! Files, tables and drawings for people and machines; the only code that writes files. Its one
-//! input is [`Outcome`], so equal outcomes give equal bytes: no clock, host, thread count or
-//! absolute path can enter.
+//! input is [`Outcome`] (for single photometric files [`crate::lamp`]'s data), so equal outcomes give
+//! equal bytes: no clock, host, thread count or absolute path can enter.
 
 mod canvas;
 pub mod csv;
+mod file;
 mod folder;
 mod isolines;
 mod json;
 mod junit;
+pub mod lamp;
 mod markup;
 pub mod number;
 mod page;
@@ -29,6 +31,7 @@ mod xml;
 
 use std::path::{Path, PathBuf};
 
+pub use file::write_file;
 pub use junit::junit;
 pub use sarif::sarif;
 pub use sentence::overall;

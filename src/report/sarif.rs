@@ -8,11 +8,16 @@ use crate::outcome::{Outcome, Requirement, Verdict};
 /// The failed and open requirements of an outcome as SARIF.
 pub fn sarif(outcome: &Outcome) -> String {
     let results: Vec<_> = outcome.requirements.iter().filter_map(result).collect();
-    let rules = json!([
+    let rules = vec![
         rule("fail", "A requirement is certainly not met."),
         rule("undecided", "The limit lies within the numerical uncertainty."),
         rule("undefined", "The value that is limited does not exist."),
-    ]);
+    ];
+    log(&rules, &results)
+}
+
+/// A log of one run.
+pub(super) fn log(rules: &[serde_json::Value], results: &[serde_json::Value]) -> String {
     let log = json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
@@ -28,7 +33,7 @@ pub fn sarif(outcome: &Outcome) -> String {
     format!("{log:#}\n")
 }
 
-fn rule(id: &str, text: &str) -> serde_json::Value {
+pub(super) fn rule(id: &str, text: &str) -> serde_json::Value {
     json!({ "id": id, "shortDescription": { "text": text } })
 }
 

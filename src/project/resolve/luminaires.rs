@@ -127,7 +127,7 @@ fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
         Ok(photometry) => {
             for finding in &photometry.findings {
                 let line = finding.line.map_or(String::new(), |line| format!(":{line}"));
-                context.note(format!("{}{line}: {}", file.get_ref(), finding.message));
+                context.note(format!("{}{line}: {finding}", file.get_ref()));
             }
             Some(Source {
                 distribution: photometry.distribution,

@@ -1,0 +1,156 @@
+//! Runs `gershun lamp …`. Files are read and examined in parallel; results keep the order in which
+//! the files were named.
+
+use std::path::{Path, PathBuf};
+
+use gershun::lamp::convert::Target;
+use gershun::lamp::{self, RULES, Severity, rules};
+use gershun::photometry::Finding;
+use gershun::project::{read_photometry, suggestion};
+use gershun::report::{lamp as report, write_file};
+use rayon::prelude::*;
+
+use crate::args_lamp::{InfoFormat, Lamp, LintFormat, TableFormat};
+use crate::{BAD_INPUT, COMPLIES, FAILS, complain, say};
+
+pub fn run(command: &Lamp) -> u8 {
+    match command {
+        Lamp::Info { files, format } => info(files, *format),
+        Lamp::Lint { files, format } => lint(files, *format),
+        Lamp::UgrTable { files, shr, format } => ugr_table(files, *shr, *format),
+        Lamp::Polar { file, out } => polar(file, out.as_deref()).unwrap_or_else(|error| complain(&error)),
+        Lamp::Convert { input, output } => convert(input, output).unwrap_or_else(|error| complain(&error)),
+    }
+}
+
+/// All files in their order; those that cannot be opened are complained about and left out.
+fn read_all(files: &[PathBuf]) -> (Vec<report::Batch>, u8) {
+    let read = |path: &PathBuf| -> Result<report::Batch, String> {
+        let bytes = read_photometry(path).map_err(|error| error.to_string())?;
+        let file = path.display().to_string();
+        let read = lamp::read(&bytes, &file).map_err(|error| lamp::unreadable(&error));
+        Ok(report::Batch { file, read })
+    };
+    let mut worst = COMPLIES;
+    let mut batch = Vec::with_capacity(files.len());
+    for result in files.par_iter().map(read).collect::<Vec<_>>() {
+        match result {
+            Ok(file) => batch.push(file),
+            Err(error) => worst = complain(&error),
+        }
+    }
+    (batch, worst)
+}
+
+fn print(text: Result<String, gershun::report::ReportError>) -> u8 {
+    match text {
+        Ok(text) => say(&text),
+        Err(error) => complain(&error.to_string()),
+    }
+}
+
+fn info(files: &[PathBuf], format: InfoFormat) -> u8 {
+    let (batch, opened) = read_all(files);
+    let printed = print(match format {
+        InfoFormat::Human => Ok(report::info_text(&batch)),
+        InfoFormat::Json => report::info_json(&batch),
+    });
+    let unreadable = batch.iter().any(|file| file.read.is_err());
+    opened.max(printed).max(if unreadable { BAD_INPUT } else { COMPLIES })
+}
+
+fn lint(files: &[PathBuf], format: LintFormat) -> u8 {
+    let (batch, opened) = read_all(files);
+    let printed = print(match format {
+        LintFormat::Human => Ok(report::lint_human(&batch)),
+        LintFormat::Json => report::lint_json(&batch),
+        LintFormat::Sarif => Ok(report::lint_sarif(&batch)),
+    });
+    let grave = |finding: &Finding| rules::severity(finding.code) == Severity::Error;
+    let failed = batch.iter().any(|file| match &file.read {
+        Ok(lamps) => lamps.iter().flat_map(|lamp| &lamp.findings).any(grave),
+        Err(finding) => grave(finding),
+    });
+    opened.max(printed).max(if failed { FAILS } else { COMPLIES })
+}
+
+fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat) -> u8 {
+    let (batch, mut worst) = read_all(files);
+    let mut tables = Vec::new();
+    let mut text = String::new();
+    for file in &batch {
+        let lamps = match &file.read {
+            Ok(lamps) => lamps,
+            Err(finding) => {
+                worst = complain(&format!("{}: {finding}", file.file));
+                continue;
+            }
+        };
+        for lamp in lamps {
+            match lamp::ugr::ugr_table(&lamp.photometry, shr) {
+                Ok(table) => {
+                    if !text.is_empty() {
+                        text.push('\n');
+                    }
+                    text.push_str(&report::ugr_text(
+                        &lamp.file,
+                        lamp.photometry.distribution.flux().0,
+                        &table,
+                    ));
+                    tables.push((lamp.file.clone(), table));
+                }
+                Err(undefined) => worst = complain(&format!("{}: {undefined}", lamp.file)),
+            }
+        }
+    }
+    let printed = print(match format {
+        TableFormat::Human => Ok(text),
+        TableFormat::Csv => report::ugr_csv(&tables),
+    });
+    worst.max(printed)
+}
+
+fn read_only(path: &Path) -> Result<lamp::Lamp, String> {
+    let bytes = read_photometry(path).map_err(|error| error.to_string())?;
+    let lamps = lamp::read(&bytes, &path.display().to_string()).map_err(|error| error.to_string())?;
+    let names: Vec<&str> = lamps.iter().map(|lamp| lamp.file.as_str()).collect();
+    let several =
+        format!("{} photometries: {}\n  hint: unpack the one you need", names.len(), names.join(", "));
+    let [only] = <[lamp::Lamp; 1]>::try_from(lamps).map_err(|_| several)?;
+    Ok(only)
+}
+
+fn polar(file: &Path, out: Option<&Path>) -> Result<u8, String> {
+    let svg = report::polar(&read_only(file)?);
+    let Some(out) = out else {
+        return Ok(say(&svg));
+    };
+    write_file(out, svg.as_bytes()).map_err(|error| error.to_string())?;
+    Ok(COMPLIES)
+}
+
+fn convert(input: &Path, output: &Path) -> Result<u8, String> {
+    let extension = output.extension().unwrap_or_default().to_string_lossy();
+    let target = Target::of_extension(&extension).ok_or_else(|| {
+        format!("{}: unknown format \".{extension}\"\n  hint: name a file .ies or .ldt", output.display())
+    })?;
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(input, output) {
+        return Err(format!("{} would replace itself\n  hint: name another file", input.display()));
+    }
+    let lamp = read_only(input)?;
+    let converted = lamp::convert::convert(&lamp.photometry, target)
+        .map_err(|error| format!("{}: {error}", input.display()))?;
+    write_file(output, &converted.bytes).map_err(|error| error.to_string())?;
+    let told: Vec<String> = converted.dropped.iter().map(|what| format!("dropped: {what}\n")).collect();
+    Ok(say(&format!("{}\n{}", output.display(), told.concat())))
+}
+
+/// The explanation of a finding's code.
+pub fn explain(code: &str) -> u8 {
+    if let Some(text) = report::explanation(code) {
+        return say(&text);
+    }
+    let hint = suggestion(code, RULES.iter().map(|rule| rule.code));
+    complain(&format!("no finding has the code \"{code}\"\n  hint: {hint}"))
+}

@@ -1,0 +1,62 @@
+//! Reads photometric files that are named on the command line, outside of any project.
+
+use std::path::{Path, PathBuf};
+
+use super::context::SMALL_FILE;
+
+/// Why a named file could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// A folder was named.
+    #[error("{0} is a folder\n  hint: name its files, for example {0}/*.ldt or {0}/*.ies")]
+    Folder(PathBuf),
+    /// Larger than any photometric file.
+    #[error("{path} has {mib} MiB, more than the limit of {limit_mib} MiB")]
+    Large {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        mib: u64,
+        /// What is allowed.
+        limit_mib: u64,
+    },
+    /// The system refused.
+    #[error("cannot read {path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// The bytes of a photometric file.
+///
+/// # Errors
+/// A folder, a file that is too large, or one that cannot be read.
+pub fn read_photometry(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let io = |source| ReadError::Io { path: path.to_owned(), source };
+    let metadata = path.metadata().map_err(io)?;
+    if metadata.is_dir() {
+        return Err(ReadError::Folder(path.to_owned()));
+    }
+    if metadata.len() > SMALL_FILE {
+        let (mib, limit_mib) = (metadata.len() >> 20, SMALL_FILE >> 20);
+        return Err(ReadError::Large { path: path.to_owned(), mib, limit_mib });
+    }
+    std::fs::read(path).map_err(io)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: a folder reported as "is a directory" without a way out.
+    #[test]
+    fn a_folder_gets_a_hint() {
+        let folder = tempfile::tempdir().expect("tempdir");
+        let error = read_photometry(folder.path()).expect_err("a folder").to_string();
+        assert!(error.contains("*.ldt"), "{error}");
+        assert!(matches!(read_photometry(&folder.path().join("none")), Err(ReadError::Io { .. })));
+    }
+}

@@ -1,0 +1,98 @@
+//! `lamp info --format json`: one object per luminaire, full precision. A file that cannot be read
+//! has the same keys, all null but its name and one finding.
+
+use serde::Serialize;
+
+use super::super::ReportError;
+use super::{Batch, format_name};
+use crate::lamp::{self, Lamp, rules};
+use crate::photometry::{Finding, Opening};
+
+#[derive(Serialize, Default)]
+struct Entry<'a> {
+    file: &'a str,
+    format: Option<&'static str>,
+    flux_integrated_lm: Option<f64>,
+    flux_zonal_lm: Option<f64>,
+    flux_rated_lm: Option<f64>,
+    lor: Option<f64>,
+    power_w: Option<f64>,
+    i_max_cd: Option<f64>,
+    opening: Option<Shape>,
+    symmetry: Option<&'static str>,
+    findings: Vec<Found<'a>>,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "shape", rename_all = "lowercase")]
+enum Shape {
+    Point,
+    Rect { length_m: f64, width_m: f64, side_x_m: f64, side_y_m: f64 },
+    Disc { diameter_m: f64, height_m: f64 },
+}
+
+#[derive(Serialize)]
+pub(super) struct Found<'a> {
+    code: &'a str,
+    severity: &'static str,
+    line: Option<usize>,
+    message: &'a str,
+    consequence: &'a str,
+}
+
+impl<'a> From<&'a Finding> for Found<'a> {
+    fn from(finding: &'a Finding) -> Self {
+        Self {
+            code: finding.code,
+            severity: rules::severity(finding.code).key(),
+            line: finding.line,
+            message: &finding.message,
+            consequence: &finding.consequence,
+        }
+    }
+}
+
+/// The array of all luminaires.
+///
+/// # Errors
+/// Where a value cannot be encoded.
+pub fn info(batch: &[Batch]) -> Result<String, ReportError> {
+    let entries: Vec<Entry> = batch.iter().flat_map(entries).collect();
+    Ok(serde_json::to_string_pretty(&entries)? + "\n")
+}
+
+fn entries(file: &Batch) -> Vec<Entry<'_>> {
+    match &file.read {
+        Ok(lamps) => lamps.iter().map(entry).collect(),
+        Err(finding) => {
+            vec![Entry { file: &file.file, findings: vec![finding.into()], ..Entry::default() }]
+        }
+    }
+}
+
+fn entry(luminaire: &Lamp) -> Entry<'_> {
+    let info = lamp::info(luminaire);
+    Entry {
+        file: &luminaire.file,
+        format: Some(format_name(info.format)),
+        flux_integrated_lm: Some(info.flux_integrated_lm),
+        flux_zonal_lm: Some(info.flux_zonal_lm),
+        flux_rated_lm: info.flux_rated_lm,
+        lor: info.lor,
+        power_w: info.power_w,
+        i_max_cd: Some(info.i_max.cd),
+        opening: Some(shape(info.opening)),
+        symmetry: Some(info.symmetry.key()),
+        findings: luminaire.findings.iter().map(Found::from).collect(),
+    }
+}
+
+fn shape(opening: Opening) -> Shape {
+    match opening {
+        Opening::Point => Shape::Point,
+        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
+            Shape::Rect { length_m, width_m, side_x_m, side_y_m }
+        }
+        Opening::Disc { diameter_m, height_m } => Shape::Disc { diameter_m, height_m },
+    }
+}

@@ -1,0 +1,199 @@
+//! `gershun lamp` as a user runs it.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const GERSHUN: &str = env!("CARGO_BIN_EXE_gershun");
+
+/// A downlight of 10 W without a fault but CR LF.
+const SOUND: &str = "IESNA:LM-63-2002\r\nTILT=NONE\r\n1 -1 1 5 1 1 2 -0.2 -0.2 0\r\n1 1 10\r\n0 22.5 45 67.5 90\r\n0\r\n\
+                     400 350 200 60 0\r\n";
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(GERSHUN).current_dir(folder).args(arguments).output().expect("runs")
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("tempdir");
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+    write("sound.ies", SOUND);
+    write("rated.ies", &SOUND.replace("1 -1 1", "1 100 1").replace("-0.2 -0.2", "0 0"));
+    write("order.ies", &SOUND.replace("45 67.5", "67.5 45"));
+    folder
+}
+
+/// Catches: keys that scripts rely on renamed or reordered, a bad file that ends the batch or
+/// goes unnoticed in the exit code.
+#[test]
+fn info_for_machines() {
+    let folder = folder();
+    let all =
+        run(folder.path(), &["lamp", "info", "--format", "json", "sound.ies", "order.ies", "rated.ies"]);
+    assert_eq!(all.status.code(), Some(2));
+    let list: Vec<serde_json::Value> = serde_json::from_str(&out(&all)).expect("JSON");
+    let names: Vec<_> = list.iter().map(|entry| entry["file"].as_str().unwrap_or_default()).collect();
+    assert_eq!(names, ["sound.ies", "order.ies", "rated.ies"]);
+    let keys = [
+        "file",
+        "format",
+        "flux_integrated_lm",
+        "flux_zonal_lm",
+        "flux_rated_lm",
+        "lor",
+        "power_w",
+        "i_max_cd",
+        "opening",
+        "symmetry",
+        "findings",
+    ];
+    for entry in &list {
+        assert_eq!(entry.as_object().map(serde_json::Map::len), Some(keys.len()));
+        assert!(keys.iter().all(|key| entry.get(key).is_some()), "{entry}");
+    }
+    let positions: Vec<_> = keys.iter().map(|key| out(&all).find(&format!("\"{key}\""))).collect();
+    assert!(positions.is_sorted(), "{positions:?}");
+    assert_eq!(list[0]["opening"]["shape"], "disc");
+    assert_eq!(list[0]["symmetry"], "rotational");
+    assert_eq!(list[1]["findings"][0]["code"], "angle-order");
+    assert!(list[1]["i_max_cd"].is_null());
+    let fine = run(folder.path(), &["lamp", "info", "sound.ies"]);
+    assert_eq!(fine.status.code(), Some(0));
+    for part in ["I_max", "beam (50 %)", "CIE flux code", "spacing S/h", "zonal flux", "γ 85°"] {
+        assert!(out(&fine).contains(part), "{part}");
+    }
+}
+
+/// Catches: severities that do not reach the exit code, a finding without line or consequence, a
+/// folder or a missing file taken for a clean one.
+#[test]
+fn lint_and_explain() {
+    let folder = folder();
+    let code = |arguments: &[&str]| run(folder.path(), arguments).status.code();
+    assert_eq!(code(&["lamp", "lint", "sound.ies"]), Some(0));
+    assert_eq!(code(&["lamp", "lint", "."]), Some(2));
+    assert_eq!(code(&["lamp", "lint", "none.ies", "sound.ies"]), Some(2));
+    let bad = run(folder.path(), &["lamp", "lint", "order.ies", "rated.ies"]);
+    assert_eq!(bad.status.code(), Some(1));
+    let text = out(&bad);
+    assert!(
+        text.contains("order.ies:5: error[angle-order]: γ must rise, found 45° after 67.5°\n  = "),
+        "{text}"
+    );
+    assert!(
+        text.contains("error[flux-contradiction]: rated 100 lm, integrates to ")
+            && text.contains("\n  = Ē is ")
+    );
+    assert!(text.contains("warning[zero-area]"));
+    for format in ["json", "sarif"] {
+        let printed = out(&run(folder.path(), &["lamp", "lint", "--format", format, "rated.ies"]));
+        let value: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+        assert!(value.to_string().contains("flux-contradiction"));
+    }
+    assert!(out(&run(folder.path(), &["explain", "spike"])).starts_with("spike (warning)\n"));
+    assert_eq!(code(&["explain", "spikes"]), Some(2));
+}
+
+/// Catches: rooms and reflectance sets exchanged, a luminaire without area given a table.
+#[test]
+fn ugr_table_as_csv() {
+    let folder = folder();
+    let table = run(folder.path(), &["lamp", "ugr-table", "--format", "csv", "--shr", "0.25", "sound.ies"]);
+    assert_eq!(table.status.code(), Some(0));
+    let text = out(&table);
+    let rows: Vec<&str> = text.lines().collect();
+    assert_eq!(rows.len(), 20);
+    assert!(rows[0].starts_with("x_h,y_h,crosswise_70_50_20,crosswise_70_30_20,"));
+    assert!(rows[1].starts_with("2,2,") && rows[19].starts_with("12,8,"));
+    assert!(rows.iter().all(|row| row.split(',').count() == 12));
+    assert_eq!(run(folder.path(), &["lamp", "ugr-table", "rated.ies"]).status.code(), Some(2));
+    assert_eq!(
+        run(folder.path(), &["lamp", "ugr-table", "--shr", "0.3", "sound.ies"]).status.code(),
+        Some(2)
+    );
+}
+
+/// A flat linear luminaire of 40 W, 1200 × 200 mm in a housing of 1300 × 300 mm, Isym 4.
+fn linear() -> Vec<String> {
+    let head = "Maker;2;4;4;90;5;22.5;rep;Lamp;no;file;date;1300;300;80;1200;200;0;0;0;0;100;92.9;1;0;1;1;LED;4000;4000;80;40";
+    let tail = "0;90;180;270;0;22.5;45;67.5;90;330;300;210;90;0;330;305;225;105;0";
+    let ratios = ["0"; 10].join(";");
+    [head, &ratios, tail].join(";").split(';').map(str::to_owned).collect()
+}
+
+/// Catches: a rule that never fires, fires on a sound file, or fires for another fault.
+#[test]
+fn every_fault_has_its_code() {
+    let codes = |text: &str| -> Vec<&'static str> {
+        let lamps = gershun::lamp::read(text.as_bytes(), "x").unwrap_or_else(|error| panic!("{error}"));
+        lamps[0].findings.iter().map(|finding| finding.code).filter(|code| *code != "crlf").collect()
+    };
+    let changed = |changes: &[(usize, &str)]| {
+        let mut lines = linear();
+        for (line, text) in changes {
+            (*text).clone_into(&mut lines[line - 1]);
+        }
+        codes(&(lines.join("\n") + "\n"))
+    };
+    // Steps of 22.5° are coarse, which is not the point here.
+    assert_eq!(codes(SOUND), ["coarse-angles"]);
+    assert_eq!(changed(&[]), ["coarse-angles"]);
+    for (line, text, code) in [
+        (13, "1000", "area-beyond-housing"),
+        (16, "0", "zero-area"),
+        (22, "40", "down-share"),
+        (23, "88", "flux-mismatch"),
+        (23, "60", "flux-contradiction"),
+        (24, "x", "conversion-factor"),
+        (25, "15", "tilt"),
+        (32, "0.9", "efficacy"),
+        (32, "4000", "efficacy"),
+        (32, "", "no-power"),
+        (52, "320", "unequal-nadir"),
+        (57, "340", "unequal-nadir"),
+        (54, "20", "drop-out"),
+        (56, "30", "horizon-light"),
+    ] {
+        assert!(
+            changed(&[(line, text)]).contains(&code),
+            "line {line} = {text}: {:?}",
+            changed(&[(line, text)])
+        );
+    }
+    assert!(changed(&[(16, "200"), (17, "1200")]).contains(&"swapped-dimensions"));
+    // Luminous long sides of 80 mm, and light near the horizon along the length only.
+    let sides = [(18, "80"), (20, "80"), (19, "1"), (21, "1"), (55, "5"), (60, "160"), (61, "80")];
+    assert!(changed(&sides).contains(&"swapped-planes"), "{:?}", changed(&sides));
+    assert!(codes(&SOUND.replace("400 350 200 60 0", "400 350 9999 60 0")).contains(&"spike"));
+    assert!(codes(&SOUND.replace("0 22.5 45 67.5 90", "5 22.5 45 67.5 90")).contains(&"missing-nadir"));
+    assert!(codes(&SOUND.replace("-0.2 -0.2", "-0.0002 -0.0002")).contains(&"implausible-luminance"));
+    let narrow = SOUND.replace("400 350 200 60 0", "9000 10 0 0 0").replace("1 -1 1", "1 -1 0.1");
+    assert!(codes(&narrow).contains(&"coarse-angles"));
+    assert!(codes(&SOUND.replacen("\r\n", "\n", 1)).contains(&"mixed-line-ends"));
+}
+
+/// Catches: a drawing or a conversion that is not written whole, the input overwritten, losses
+/// that nobody is told of.
+#[test]
+fn polar_and_convert() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let drawn = run(folder.path(), &["lamp", "polar", "sound.ies", "--out", "a.svg"]);
+    assert_eq!(drawn.status.code(), Some(0));
+    let svg = std::fs::read_to_string(path("a.svg")).expect("written");
+    assert!(svg.starts_with("<svg") && svg.contains("C90–C270"));
+    assert_eq!(out(&run(folder.path(), &["lamp", "polar", "sound.ies"])), svg);
+    let told = run(folder.path(), &["lamp", "convert", "sound.ies", "new.ldt"]);
+    assert_eq!(told.status.code(), Some(0));
+    assert!(out(&told).starts_with("new.ldt\n") && out(&told).contains("dropped: "));
+    assert_eq!(run(folder.path(), &["lamp", "lint", "new.ldt"]).status.code(), Some(0));
+    for arguments in [["sound.ies", "sound.ies"], ["sound.ies", "a.txt"], ["order.ies", "b.ldt"]] {
+        let refused = run(folder.path(), &["lamp", "convert", arguments[0], arguments[1]]);
+        assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
+    }
+    assert_eq!(std::fs::read_to_string(path("sound.ies")).expect("still there"), SOUND);
+    assert!(!path("b.ldt").exists() && !path("a.txt").exists());
+}

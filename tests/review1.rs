@@ -2,11 +2,14 @@
 
 mod common;
 
-use common::{lambert, panel, room};
+use common::{lambert, panel, planar, room, row, sheets};
 use gershun::emitters::Emitters;
+use gershun::estimate::{Estimate, quantile};
 use gershun::material::{Bsdf, Material};
+use gershun::query::Demand;
 use gershun::rng::Rng;
 use gershun::scene::Scene;
+use gershun::solve::{Effort, Method};
 use glam::DVec3;
 
 fn mirror(name: &str) -> Material {
@@ -41,4 +44,56 @@ fn the_cheap_test_of_images_never_hides_light() {
     }
     assert!(lit > 100, "{lit}");
     assert_eq!(hidden, 0, "of {lit}");
+}
+
+/// Catches: openings that lie in a surface lost where a ray meets them after several mirrors, because
+/// the surface is as near as the opening.
+#[test]
+fn a_recessed_opening_is_seen_by_repeated_reflection() {
+    let answer = |z: f64| {
+        let mut mesh = room(DVec3::new(4.0, 4.0, 3.0));
+        for surface in &mut mesh.surfaces {
+            if surface.name == "Wall_W" || surface.name == "Wall_E" {
+                surface.material = 3;
+            }
+        }
+        let materials = vec![lambert("f", 0.0), lambert("w", 0.0), lambert("c", 0.0), mirror("m")];
+        let mut lamp = panel(4000.0, 1.0, DVec3::new(2.1, 1.9, z));
+        lamp.world_from_luminaire = gershun::luminaire::orientation(DVec3::NEG_Z, 30.0);
+        let scene = Scene::new(mesh, materials, vec![lamp]).unwrap();
+        let demand = Demand {
+            receivers: vec![planar(DVec3::new(1.3, 2.2, 0.0), DVec3::Z)],
+            rays: Vec::new(),
+            flux: false,
+        };
+        let effort = Effort { gather: 16_384, walks: 1, opening_points: 1024, ..Effort::default() };
+        let sheets = sheets(&scene, &demand, Method::Links, effort, 1, 32);
+        Estimate::from_blocks(&row(&sheets, 0, 1))
+    };
+    let (recessed, below) = (answer(3.0), answer(3.0 - 1e-5));
+    println!("{recessed:?} {below:?}");
+    let se = recessed.se.hypot(below.se);
+    assert!(5.0 * se < 0.05 * below.value, "cannot resolve: {se}");
+    assert!((recessed.value - below.value).abs() < 5.0 * se, "{recessed:?} {below:?}");
+}
+
+/// Catches: Student quantiles that are wrong far out, where Bonferroni and the looks put them
+/// (reference: incomplete beta function with 40 digits).
+#[test]
+fn quantiles_are_right_far_out() {
+    for (tail, df, truth) in [
+        (1e-6, 31, 5.828_602),
+        (1e-8, 31, 7.478_159),
+        (2.5e-7, 1023, 5.058_754),
+        (1e-9, 63, 6.999_812),
+        (1e-7, 4999, 5.206_636),
+        (1e-4, 2000, 3.725_923),
+        (1e-8, 1023, 5.656_873),
+        (1e-10, 511, 6.492_665),
+        (1e-7, 5000, 5.206_636),
+    ] {
+        let found = quantile(1.0 - tail, df);
+        println!("{tail:e} {df}: {found} {truth}");
+        assert!((found - truth).abs() < 1e-3 * truth, "t(1 − {tail:e}, {df}) = {found}, not {truth}");
+    }
 }

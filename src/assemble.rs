@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::emitters::{Emitters, Seen};
+use crate::glare::ugr::NO_SOURCE;
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
@@ -170,16 +171,22 @@ impl Context<'_> {
     }
 
     /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
+    /// A direction in which no source is visible is never the worst, unless it is so in all.
     fn worst_view(&self, room: usize, viewpoint: usize, light_scene: usize, alpha: f64) -> Gauged {
         let views: Vec<usize> = (0..self.plan.rooms[room].views.len())
             .filter(|&index| self.plan.rooms[room].views[index].viewpoint == viewpoint)
             .collect();
         let each = alpha / views.len().max(1) as f64;
-        let mut worst: Option<Gauged> = None;
+        let (mut worst, mut dark): (Option<Gauged>, Option<Gauged>) = (None, None);
         for &index in &views {
             let gauged = self.glare(room, index, light_scene, each).ugr;
-            if gauged.value.is_err() {
-                return gauged;
+            match &gauged.value {
+                Err(undefined) if undefined.reason == NO_SOURCE => {
+                    dark = Some(gauged);
+                    continue;
+                }
+                Err(_) => return gauged,
+                Ok(_) => {}
             }
             let value = gauged.value.clone().unwrap_or(f64::NAN);
             worst = Some(match worst {
@@ -191,7 +198,9 @@ impl Context<'_> {
                 }
             });
         }
-        worst.unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
+        worst
+            .or(dark)
+            .unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
     }
 
     fn glare(&self, room: usize, index: usize, light_scene: usize, alpha: f64) -> view::Glare {

@@ -1,6 +1,7 @@
 //! Found by an independent review of the light transport and its intervals.
 
 mod common;
+mod projects;
 
 use common::{lambert, panel, planar, room, row, sheets};
 use gershun::emitters::Emitters;
@@ -96,4 +97,23 @@ fn quantiles_are_right_far_out() {
         println!("{tail:e} {df}: {found} {truth}");
         assert!((found - truth).abs() < 1e-3 * truth, "t(1 − {tail:e}, {df}) = {found}, not {truth}");
     }
+}
+
+const VIEWS: &str = "[scene]\nbox = { size = [8, 4, 3], floor = 0.2, walls = 0.5, ceiling = 0.7 }\n\
+    [luminaires.A]\nlambert = { flux = 20000 }\narea = { rect = [0.6, 0.6] }\n\
+    [[place]]\nluminaire = \"A\"\nat = [6, 2, 2.9]\n";
+
+/// Catches: a sweep whose glaring direction is not judged because another direction sees no source.
+#[test]
+fn one_dark_direction_does_not_hide_the_glare_of_the_others() {
+    let text = VIEWS.to_owned()
+        + "[[viewpoint]]\nname = \"v\"\neye = [1.5, 2, 1.2]\ndirection = [1, 0, 0]\n\
+           sweep = { from = -180, to = 90, step = 90 }\n\
+           [[require]]\nviewpoint = \"v\"\nquantity = \"UGR\"\nmax = 19\n";
+    let outcome = projects::run(&text, &[], 32, Effort { particles: 16, ..Effort::default() });
+    for view in &outcome.rooms[0].viewpoints {
+        println!("{:?} {:?}", view.direction, view.ugr);
+    }
+    println!("{:?}", outcome.requirements[0]);
+    assert_eq!(outcome.requirements[0].verdict, gershun::outcome::Verdict::Fail);
 }

@@ -117,3 +117,23 @@ fn one_dark_direction_does_not_hide_the_glare_of_the_others() {
     println!("{:?}", outcome.requirements[0]);
     assert_eq!(outcome.requirements[0].verdict, gershun::outcome::Verdict::Fail);
 }
+
+/// Catches: a horizontal task whose edges were listed clockwise being judged by the light from below.
+#[test]
+fn a_task_listed_clockwise_is_lit_from_above() {
+    let text = |u: &str, v: &str| {
+        format!(
+            "{VIEWS}[[area]]\nname = \"desk\"\nrow = \"34.2\"\n\
+             rect = {{ origin = [5.5, 1.5, 0.75], u = {u}, v = {v} }}\ngrid = {{ count = [2, 2] }}\n\
+             [norm]\nstandard = \"en-12464-1-2021\"\nrow = \"34.2\"\n"
+        )
+    };
+    let mean = |text: &str| {
+        let outcome = projects::run(text, &[], 4, Effort { particles: 16, ..Effort::default() });
+        let found = outcome.requirements.iter().find(|r| r.subject == "desk").expect("required");
+        println!("{found:?}");
+        found.value.clone().unwrap()
+    };
+    let (a, b) = (mean(&text("[1, 0, 0]", "[0, 1, 0]")), mean(&text("[0, 1, 0]", "[1, 0, 0]")));
+    assert!((a / b - 1.0).abs() < 0.1, "{a} {b}");
+}

@@ -13,6 +13,7 @@ use crate::outcome::{
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
 use crate::project::{Compare, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
+use crate::scene::Channel;
 use crate::units::Undefined;
 
 /// Everything that is measured on one world after some blocks.
@@ -361,7 +362,7 @@ impl Context<'_> {
                 &self.world.scene,
                 &light_scene.name,
                 &weights,
-                tasks.as_deref(),
+                tasks.as_deref().map(|tasks| (tasks, self.flux_of_room(room, &weights))),
                 self.alpha,
             );
             if let Some(balance) = balance {
@@ -382,6 +383,21 @@ impl Context<'_> {
             }
         }
         balances
+    }
+
+    /// Initial flux of a room's own luminaires, and of emitting surfaces, which belong to no room, lm.
+    fn flux_of_room(&self, room: &Room, weights: &[f64]) -> f64 {
+        let scene = &self.world.scene;
+        let of_luminaires = room.luminaires.iter().map(|&index| {
+            let luminaire = &scene.luminaires[index];
+            weights[scene.channel_of[index]] * luminaire.kind.flux_lm * luminaire.dim
+        });
+        let tally = self.answers.sheets.first().and_then(|sheet| sheet.flux.as_ref());
+        let channels = scene.channels.iter().zip(weights).zip(tally.map_or(&[][..], |t| &t.emitted));
+        let of_surfaces = channels
+            .filter(|((channel, _), _)| matches!(channel, Channel::Surfaces { .. }))
+            .map(|((_, weight), flux)| weight * flux);
+        of_luminaires.chain(of_surfaces).sum()
     }
 
     /// Block values of Σ Ē·A over the task areas, lm.

@@ -137,3 +137,45 @@ fn a_task_listed_clockwise_is_lit_from_above() {
     let (a, b) = (mean(&text("[1, 0, 0]", "[0, 1, 0]")), mean(&text("[0, 1, 0]", "[1, 0, 0]")));
     assert!((a / b - 1.0).abs() < 0.1, "{a} {b}");
 }
+
+/// Catches: a room's utilisation that divides by the flux of other rooms of the same file.
+#[test]
+fn utilisation_is_of_the_room_s_own_luminaires() {
+    let [a, b] = [0.0, 5.0].map(|x| {
+        projects::shell([4.0, 4.0, 3.0]).into_iter().map(move |(name, material, corners)| {
+            let corners = corners.map(|[cx, y, z]| [cx + x, y, z]);
+            (name, material, corners)
+        })
+    });
+    let names = ["A1", "A2", "A3", "A4", "A5", "A6", "B1", "B2", "B3", "B4", "B5", "B6"];
+    let sheets: Vec<projects::Sheet> =
+        a.chain(b).zip(names).map(|((_, material, corners), name)| (name, material, corners)).collect();
+    let mut files = projects::gltf(&sheets);
+    // Two parents above the sheets: the rooms.
+    let text = String::from_utf8(files[0].1.clone()).unwrap();
+    let text = text.replace("{\"nodes\":[0,1,2,3,4,5,6,7,8,9,10,11]}", "{\"nodes\":[12,13]}").replace(
+        "],\"meshes\"",
+        ",{\"name\":\"one\",\"children\":[0,1,2,3,4,5]},{\"name\":\"two\",\"children\":[6,7,8,9,10,11]}],\"meshes\"",
+    );
+    files[0].1 = text.into_bytes();
+    let mut text = "[scene]\nfile = \"scene.gltf\"\n[materials]\nshell = { reflectance = 0.5 }\n\
+        [luminaires.A]\nlambert = { flux = 4000 }\narea = { rect = [0.6, 0.6] }\n"
+        .to_owned();
+    for (name, x) in [("one", 0.0), ("two", 5.0)] {
+        text += &format!(
+            "[[room]]\nname = \"{name}\"\nnode = \"{name}\"\n\
+             [[place]]\nluminaire = \"A\"\nat = [{}, 2, 2.9]\n\
+             [[area]]\nname = \"desk {name}\"\nroom = \"{name}\"\n\
+             rect = {{ origin = [{x}, 0, 0.75], u = [4, 0, 0], v = [0, 4, 0] }}\n",
+            x + 2.0,
+        );
+    }
+    let outcome = projects::run(&text, &files, 4, Effort::default());
+    for room in &outcome.rooms {
+        println!("{} {:?} {}", room.name, room.flux[0].utilisation, room.flux[0].emitted_lm);
+    }
+    // A single panel of 4000 lm: well above half of it meets the working plane.
+    for room in &outcome.rooms {
+        assert!(room.flux[0].utilisation.unwrap().value > 0.5, "{}", room.name);
+    }
+}

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::emitters::{Emitters, Seen};
+use crate::glare::ugr::NO_SOURCE;
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
@@ -12,6 +13,7 @@ use crate::outcome::{
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
 use crate::project::{Compare, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
+use crate::scene::Channel;
 use crate::units::Undefined;
 
 /// Everything that is measured on one world after some blocks.
@@ -170,16 +172,22 @@ impl Context<'_> {
     }
 
     /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
+    /// A direction in which no source is visible is never the worst, unless it is so in all.
     fn worst_view(&self, room: usize, viewpoint: usize, light_scene: usize, alpha: f64) -> Gauged {
         let views: Vec<usize> = (0..self.plan.rooms[room].views.len())
             .filter(|&index| self.plan.rooms[room].views[index].viewpoint == viewpoint)
             .collect();
         let each = alpha / views.len().max(1) as f64;
-        let mut worst: Option<Gauged> = None;
+        let (mut worst, mut dark): (Option<Gauged>, Option<Gauged>) = (None, None);
         for &index in &views {
             let gauged = self.glare(room, index, light_scene, each).ugr;
-            if gauged.value.is_err() {
-                return gauged;
+            match &gauged.value {
+                Err(undefined) if undefined.reason == NO_SOURCE => {
+                    dark = Some(gauged);
+                    continue;
+                }
+                Err(_) => return gauged,
+                Ok(_) => {}
             }
             let value = gauged.value.clone().unwrap_or(f64::NAN);
             worst = Some(match worst {
@@ -191,7 +199,9 @@ impl Context<'_> {
                 }
             });
         }
-        worst.unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
+        worst
+            .or(dark)
+            .unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
     }
 
     fn glare(&self, room: usize, index: usize, light_scene: usize, alpha: f64) -> view::Glare {
@@ -352,7 +362,7 @@ impl Context<'_> {
                 &self.world.scene,
                 &light_scene.name,
                 &weights,
-                tasks.as_deref(),
+                tasks.as_deref().map(|tasks| (tasks, self.flux_of_room(room, &weights))),
                 self.alpha,
             );
             if let Some(balance) = balance {
@@ -373,6 +383,21 @@ impl Context<'_> {
             }
         }
         balances
+    }
+
+    /// Initial flux of a room's own luminaires, and of emitting surfaces, which belong to no room, lm.
+    fn flux_of_room(&self, room: &Room, weights: &[f64]) -> f64 {
+        let scene = &self.world.scene;
+        let of_luminaires = room.luminaires.iter().map(|&index| {
+            let luminaire = &scene.luminaires[index];
+            weights[scene.channel_of[index]] * luminaire.kind.flux_lm * luminaire.dim
+        });
+        let tally = self.answers.sheets.first().and_then(|sheet| sheet.flux.as_ref());
+        let channels = scene.channels.iter().zip(weights).zip(tally.map_or(&[][..], |t| &t.emitted));
+        let of_surfaces = channels
+            .filter(|((channel, _), _)| matches!(channel, Channel::Surfaces { .. }))
+            .map(|((_, weight), flux)| weight * flux);
+        of_luminaires.chain(of_surfaces).sum()
     }
 
     /// Block values of Σ Ē·A over the task areas, lm.

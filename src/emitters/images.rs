@@ -51,9 +51,13 @@ impl Mirror {
         if here * there >= 0.0 {
             return false;
         }
-        // Other points of the opening meet the plane at most `radius_m` from where its centre does.
-        let at = point + (image - point) * (here / (here - there));
-        let reach_m = self.radius_m + radius_m;
+        // Where the ray to another point of the opening meets the plane: it is turned by at most
+        // `radius_m`, and cut earlier or later where that point lies nearer to the plane or farther.
+        let towards = image - point;
+        let share = here / (here - there);
+        let largest = here.abs() / (here.abs() + there.abs() - radius_m);
+        let at = point + towards * share;
+        let reach_m = self.radius_m + largest * radius_m + (largest - share) * towards.length();
         (at - self.centre).length_squared() <= reach_m * reach_m
     }
 

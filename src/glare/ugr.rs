@@ -12,6 +12,9 @@ pub const LARGE_SOURCE_M2: f64 = 1.5;
 /// Solid angles (sr) for which UGR was fitted.
 pub const VALID_SOLID_ANGLE_SR: [f64; 2] = [3e-4, 0.1];
 
+/// The reason why there is no index where nothing shines: no glare, unlike every other reason.
+pub const NO_SOURCE: &str = "no light source is visible";
+
 /// A source as one eye sees it; what is hidden from the eye is not part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlareSource {
@@ -76,7 +79,7 @@ fn index(
         sum += glare / (source.position_index * source.position_index);
     }
     if !(sum > 0.0) {
-        return Err(Undefined::because("no light source is visible"));
+        return Err(Undefined::because(NO_SOURCE));
     }
     if !(background.0 > 0.0) {
         return Err(Undefined::because("the background luminance is not positive"));

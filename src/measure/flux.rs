@@ -7,13 +7,14 @@ use crate::scene::Scene;
 use crate::solve::FluxSheet;
 
 /// The balance under one light scene; `None` if no tally was made. `tasks` are block values of the
-/// flux on the task areas (Σ Ē·A), for the utilisation.
+/// flux on the task areas of a room (Σ Ē·A) and the flux of the room's luminaires, for the
+/// utilisation: several rooms may stand in one scene.
 pub fn balance(
     answers: &Answers,
     scene: &Scene,
     light_scene: &str,
     weights: &[f64],
-    tasks: Option<&[f64]>,
+    tasks: Option<(&[f64], f64)>,
     alpha: f64,
 ) -> Option<FluxBalance> {
     let tallies: Vec<&FluxSheet> =
@@ -41,8 +42,8 @@ pub fn balance(
         escaped: interval(escaped),
         residual_share,
         utilisation: tasks
-            .filter(|_| emitted_lm > 0.0)
-            .map(|blocks| interval(blocks.iter().map(|flux| flux / emitted_lm).collect())),
+            .filter(|(_, room_lm)| *room_lm > 0.0)
+            .map(|(blocks, room_lm)| interval(blocks.iter().map(|flux| flux / room_lm).collect())),
         surfaces: (0..surfaces)
             .map(|surface| {
                 let incident: Vec<f64> =

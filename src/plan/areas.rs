@@ -289,7 +289,8 @@ fn leaves_solid(scene: &Scene, mut origin: DVec3, direction: DVec3) -> bool {
 
 /// What is measured on an area: what the user listed, what its kind implies, what `[[require]]` needs.
 fn quantities(project: &Project, world: &World, spec: &AreaSpec, index: usize, grid: &Grid) -> Vec<Quantity> {
-    let horizontal = grid.points.iter().all(|point| point.normal.z > 0.99);
+    // A plane is lit from above in whichever order its edges were listed; only surfaces look down.
+    let horizontal = grid.points.iter().all(|point| point.normal.z.abs() > 0.99);
     let mut wanted = spec.quantities.clone();
     if wanted.is_empty() || project.norm.is_some() {
         let usual = match spec.kind {

@@ -94,8 +94,9 @@ pub(super) fn follow(
 fn add_openings(emitters: &Emitters, origin: DVec3, direction: DVec3, reach_m: f64, met: &mut [f64]) {
     for luminaire in 0..emitters.scene.luminaires.len() {
         if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
-            && distance_m < reach_m
+            && distance_m - 2.0 * emitters.scene.tracer.offset_m() < reach_m
         {
+            // The opening may lie *in* the surface that ends the ray.
             met[emitters.scene.channel_of[luminaire]] += luminance;
         }
     }

@@ -159,7 +159,9 @@ fn add_lamps(
         let into = lamp.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - lamp.position), into * direction);
         let t = -o.z / d.z;
-        if area_m2 > 0.0 && t > 0.0 && t < reach && lamp.kind.opening.contains(o + d * t) {
+        // The opening may lie *in* the surface that ends the ray.
+        let before = t - 2.0 * scene.tracer.offset_m() < reach;
+        if area_m2 > 0.0 && t > 0.0 && before && lamp.kind.opening.contains(o + d * t) {
             let intensity_cd = lamp.kind.distribution.intensity_along(-d) * lamp.dim;
             out[scene.channel_of[index] * PARTS + part as usize] +=
                 weight * intensity_cd / (area_m2 * d.z.abs());

@@ -7,7 +7,9 @@ use std::path::Path;
 
 use gershun::geometry::DVec3;
 use gershun::material::Bsdf;
+use gershun::plan::Subject;
 use gershun::project::{AreaShape, Diagnostic, Goal, LoadOptions, Project, load};
+use gershun::quantity::Quantity;
 
 const GOOD: &str = r#"[project]
 name = "Office"
@@ -617,5 +619,41 @@ fn one_mistake_does_not_raise_false_alarms() {
         let errors = load_text(&(good_but(old, new) + requirement)).unwrap_err();
         assert_eq!(errors.len(), 1, "{}", all(&errors));
         println!("{}\n", errors[0]);
+    }
+}
+
+#[test]
+fn a_requirement_is_judged_like_the_norm_by_the_scene_and_the_table_of_its_subject() {
+    let text = good_but("name = \"Seat\"", "name = \"Seat\"\nlight_scene = \"late\"")
+        + "\n[light_scenes]\nday = { A = 1 }\nlate = { A = 0.5 }\n"
+        + "[[require]]\nviewpoint = \"Seat\"\nquantity = \"UGR\"\nmax = 19\n"
+        + "[[require]]\nviewpoint = \"Seat\"\nquantity = \"UGR\"\nmax = 19\nlight_scene = \"day\"\n"
+        + "[[require]]\nroom = \"Office\"\nquantity = \"UGR\"\nmax = 19\n";
+    let with_norm = text.clone() + "[norm]\nstandard = \"en-12464-1-2021\"\nrow = \"34.2\"\n";
+    for text in [text, with_norm] {
+        let project = load_text(&text).unwrap_or_else(|e| panic!("{}", all(&e)));
+        let plan = gershun::plan::plan(&project, &project.worlds[0]).unwrap();
+        let required = &plan.rooms[0].requirements;
+        let own: Vec<_> = required.iter().filter(|r| r.standard == "project").collect();
+        assert_eq!(own.iter().map(|r| r.light_scene).collect::<Vec<_>>(), [1, 0, 0]);
+        for table in required.iter().filter(|r| r.quantity == Quantity::Ugr && r.subject_name == "Office") {
+            assert!(matches!(table.subject, Subject::UgrTable(0.25)), "{table:?}");
+        }
+    }
+}
+
+#[test]
+fn what_no_value_could_ever_decide_is_a_mistake_and_not_left_unassessed() {
+    for (requirement, message) in [
+        ("room = \"Office\"\nquantity = \"E_h\"", "E_h is no quantity of a room"),
+        ("area = \"Desk\"\nquantity = \"UGR\"", "UGR is no quantity of an area"),
+        ("viewpoint = \"Seat\"\nquantity = \"E_cyl\"", "E_cyl is no quantity of a viewpoint"),
+        ("area = \"Desk\"\nquantity = \"E_h\"\nstatistic = \"value\"", "no statistic \"value\" of E_h"),
+        ("viewpoint = \"Seat\"\nquantity = \"UGR\"\nstatistic = \"mean\"", "no statistic \"mean\" of UGR"),
+    ] {
+        let text = format!("{GOOD}\n[[require]]\n{requirement}\nmin = 1\n");
+        let errors = load_text(&text).unwrap_err();
+        assert_eq!(errors.len(), 1, "{}", all(&errors));
+        assert!(errors[0].message.contains(message) && errors[0].line > 0, "{}", errors[0]);
     }
 }

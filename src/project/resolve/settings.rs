@@ -189,6 +189,9 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
         let (Some((world, subject)), Some(quantity)) = (subject, quantity) else {
             continue;
         };
+        if !suits(subject, quantity, &section.quantity, context) {
+            continue;
+        }
         let statistic = statistic.unwrap_or(Some(match (subject, quantity) {
             (CustomSubject::Viewpoint(_), _) | (_, Quantity::Ugr | Quantity::ColourRendering) => {
                 Statistic::Value
@@ -196,6 +199,13 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             (CustomSubject::Room(_) | CustomSubject::Area(_), _) => Statistic::Mean,
         }));
         let Some(statistic) = statistic else { continue };
+        let single = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering);
+        if let (Some(key), true) = (&section.statistic, single != (statistic == Statistic::Value)) {
+            let message = format!("no statistic \"{}\" of {}", key.get_ref(), section.quantity.get_ref());
+            let hint = if single { "leave it out" } else { "there is: mean, min, max, U0, Ud" };
+            context.error(&key.span(), message, hint);
+            continue;
+        }
         drafts[world].requirements.push(CustomRequirement {
             subject,
             quantity,
@@ -205,6 +215,22 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             light_scene,
         });
     }
+}
+
+/// Whether a quantity exists where it is required: what nothing could ever decide is a mistake, not
+/// a requirement that is left unassessed.
+fn suits(subject: CustomSubject, quantity: Quantity, name: &At<String>, context: &mut Context) -> bool {
+    let single = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering);
+    let (what, hint) = match subject {
+        CustomSubject::Room(_) if !single => ("a room", "it is measured on areas: name one, area = \"…\""),
+        CustomSubject::Area(_) if single => ("an area", "require it of a room or, UGR, of a viewpoint"),
+        CustomSubject::Viewpoint(_) if quantity != Quantity::Ugr => {
+            ("a viewpoint", "a viewpoint has UGR only")
+        }
+        CustomSubject::Room(_) | CustomSubject::Area(_) | CustomSubject::Viewpoint(_) => return true,
+    };
+    context.error(&name.span(), format!("{} is no quantity of {what}", name.get_ref()), hint);
+    false
 }
 
 fn subject(

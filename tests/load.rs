@@ -615,8 +615,28 @@ fn one_mistake_does_not_raise_false_alarms() {
         ("box = {", "file = \"none.glb\" #"),
         ("u = [2, 0, 0]", "u = [0, 0, 0]"),
         ("lambert = { flux = 3600 }", "file = \"none.ldt\""),
+        // What could not be read at all is not missing where it is referred to.
+        ("maintenance = 0.8", "maintenance = \"good\""),
+        ("name = \"Desk\"\nrect", "name = \"Desk\"\nborder = \"wide\"\nrect"),
+        ("name = \"Desk\"\nrect", "nmae = \"Desk\"\nrect"),
+        ("eye = [4, 1, 1.2]", "eye = [4, 1]"),
+        ("[scene]", "[materials]\nFloor = 0.3\n[scene]"),
+        // A misspelt key explains why the right one is not there.
+        ("lambert = {", "lambret = {"),
+        ("field = {", "feild = {"),
+        ("rect = { origin", "rekt = { origin"),
+        ("[scene]", "[materials]\nFloor = { reflectanse = 0.3 }\n[scene]"),
+        ("sweep = {", "swep = {"),
+        // Nothing is known of a file that is not TOML.
+        ("luminaire = \"A\"", "luminaire = \"A"),
+        ("[scene]", "[norm]\nstandard = 12464\n[[room]]\nname = \"R\"\nrow = \"34.2\"\n[scene]"),
     ] {
-        let errors = load_text(&(good_but(old, new) + requirement)).unwrap_err();
+        let requirement = requirement.to_owned()
+            + "[[require]]\nviewpoint = \"Seat\"\nquantity = \"UGR\"\nmax = 19\n[declared]\nA = { ra = 80 }\n"
+            + "[light_scenes]\nday = { A = 1 }\n"
+            + "[[area]]\nname = \"Round\"\nkind = \"surrounding\"\nof = \"Desk\"\n"
+            + "rect = { origin = [0, 0, 0.75], u = [4, 0, 0], v = [0, 3, 0] }\n";
+        let errors = load_text(&(good_but(old, new) + &requirement)).unwrap_err();
         assert_eq!(errors.len(), 1, "{}", all(&errors));
         println!("{}\n", errors[0]);
     }

@@ -104,7 +104,7 @@ pub fn check_rows(file: &File, norm: Option<&Norm>, context: &mut Context) {
     for row in of_norm.chain(of_rooms).chain(of_areas) {
         match norm {
             // A norm that could not be read was reported already.
-            None if file.norm.is_some() => {}
+            None if file.norm.is_some() || file.may_have_lost("norm", "") => {}
             None => {
                 let hint = "[norm] standard = \"en-12464-1-2021\"";
                 context.error(&row.span(), "a row needs a norm", hint);
@@ -183,7 +183,7 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             context.finite(&[*bound.get_ref()], &bound.span());
         }
         if bounds.into_iter().all(Option::is_none) {
-            context.error(&span, "a requirement needs `min` or `max`", "");
+            context.missing(&span, "a requirement needs `min` or `max`", "");
         }
         let subject = subject(section, &span, file, drafts, context);
         let (Some((world, subject)), Some(quantity)) = (subject, quantity) else {
@@ -264,14 +264,15 @@ fn subject(
         }
         _ => {
             let message = "a requirement concerns exactly one of room, area, viewpoint";
-            context.error(span, message, "");
+            context.missing(span, message, "");
             return None;
         }
     };
     // What was written but has a mistake of its own is not unknown.
     let areas = file.areas.iter().map(|area| &area.get_ref().name);
     let views = file.viewpoints.iter().map(|view| &view.get_ref().name);
-    let written = areas.chain(views).any(|known| known.get_ref() == name.get_ref());
+    let written = areas.chain(views).any(|known| known.get_ref() == name.get_ref())
+        || file.may_have_lost(what, name.get_ref());
     if found.is_none() && !written && !drafts.is_empty() {
         let hint = suggestion(name.get_ref(), known);
         context.error(&name.span(), format!("no {what} \"{}\"", name.get_ref()), &hint);
@@ -292,6 +293,7 @@ pub fn declared(file: &File, drafts: &[Draft], context: &mut Context) -> Vec<Dec
     for (name, section) in &file.declared {
         let section = section.get_ref();
         let mut known: Vec<&str> = file.luminaires.iter().map(|(n, _)| n.get_ref().as_str()).collect();
+        known.extend(file.lost_names("luminaires").map(|name| name.get_ref().as_str()));
         known.extend(room_names(drafts));
         if !known.contains(&name.get_ref().as_str()) && !drafts.is_empty() {
             let hint = suggestion(name.get_ref(), known);

@@ -677,3 +677,30 @@ fn what_no_value_could_ever_decide_is_a_mistake_and_not_left_unassessed() {
         assert!(errors[0].message.contains(message) && errors[0].line > 0, "{}", errors[0]);
     }
 }
+
+#[test]
+fn walls_that_the_norm_asks_for_are_called_like_their_surfaces() {
+    let walls = |room: &str| -> Vec<String> {
+        let text = format!("{room}\n[norm]\nstandard = \"en-12464-1-2021\"\nrow = \"34.2\"\n");
+        let project = load_text(&text).unwrap_or_else(|e| panic!("{}", all(&e)));
+        let plan = gershun::plan::plan(&project, &project.worlds[0]).unwrap();
+        let names = plan.rooms[0].areas.iter().map(|area| area.name.clone());
+        names.filter(|name| name.to_lowercase().contains("wall")).collect()
+    };
+    let rest = "reflectances = { floor = 0.2, walls = 0.5, ceiling = 0.7 }";
+    // Clockwise, from the north-east: names follow the compass, not the order of writing.
+    let hall = format!(
+        "[materials]\nWin = {{ glass = 0.9 }}\n[[room]]\nname = \"Hall\"\nheight = 3\n{rest}\n\
+         footprint = [[6, 4], [6, 0], [0, 0], [0, 4]]\n\
+         openings = [{{ wall = \"Wall_S\", from = [1, 1], to = [3, 2], material = \"Win\" }}]"
+    );
+    let mut found = walls(&hall);
+    found.sort();
+    assert_eq!(found, ["Hall · Wall_E", "Hall · Wall_N", "Hall · Wall_S", "Hall · Wall_W"]);
+    let corner = format!(
+        "[[room]]\nname = \"L\"\nheight = 3\n{rest}\n\
+         footprint = [[0, 0], [8, 0], [8, 4], [4, 4], [4, 8], [0, 8]]"
+    );
+    let expected: Vec<String> = (1..=6).map(|number| format!("L · Wall_{number}")).collect();
+    assert_eq!(walls(&corner), expected);
+}

@@ -280,7 +280,12 @@ fn list_norms() -> u8 {
     for (id, source) in bundled() {
         match Standard::parse(source, id) {
             Ok(standard) => {
-                text.push_str(&format!("{id}  {} ({} rows)\n", standard.title, standard.rows.len()));
+                text.push_str(&format!(
+                    "{id}  {}  {} ({} rows)\n",
+                    standard.short,
+                    standard.title,
+                    standard.rows.len()
+                ));
             }
             Err(error) => return complain(&error.to_string()),
         }
@@ -312,7 +317,8 @@ fn show_norm(name: &str, row: Option<&str>) -> u8 {
             row.unwrap_or("")
         ));
     }
-    let mut text = format!("{}, {}\n{}\n", standard.title, standard.edition, standard.note);
+    let mut text =
+        format!("{}: {}, {}\n{}\n", standard.short, standard.title, standard.edition, standard.note);
     for entry in rows {
         text.push_str(&format!("\n{}  {}: {}\n", entry.reference, entry.area, entry.task));
         let limits = if row.is_some() { standard.requirements(entry) } else { entry.limits.clone() };
@@ -321,9 +327,10 @@ fn show_norm(name: &str, row: Option<&str>) -> u8 {
                 Bound::Min(value) => format!(">= {value}"),
                 Bound::Max(value) => format!("<= {value}"),
             };
-            let zone = format!("{:?}", limit.zone).to_lowercase();
+            let zone = limit.zone.key();
             let quantity = format!("{} {}", limit.quantity.key(), limit.statistic.key());
-            text.push_str(&format!("    {zone:<12} {quantity:<14} {bound:<9} {:?}\n", limit.verified));
+            let standing = limit.verified.key();
+            text.push_str(&format!("    {zone:<12} {quantity:<14} {bound:<9} {standing}\n"));
         }
     }
     say(&text)

@@ -218,6 +218,22 @@ impl Verified {
     }
 }
 
+impl Zone {
+    /// The word used in files and lists.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Task => "task",
+            Self::Surrounding => "surrounding",
+            Self::Background => "background",
+            Self::Walls => "walls",
+            Self::Ceiling => "ceiling",
+            Self::Cylindrical => "cylindrical",
+            Self::Room => "room",
+            Self::Declared => "declared",
+        }
+    }
+}
+
 /// A lower limit.
 fn minimum(zone: Zone, quantity: Quantity, statistic: Statistic, value: f64, verified: Verified) -> Limit {
     Limit { zone, quantity, statistic, bound: Bound::Min(value), verified }

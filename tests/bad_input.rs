@@ -443,3 +443,17 @@ fn the_report_is_whole_and_only_its_own_files_are_there() {
     let beside: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert_eq!(beside.len(), 4, "project, scene, buffer, out: {beside:?}");
 }
+
+/// Catches: names of the code instead of the words the files use, a norm without its short name.
+#[test]
+fn norms_are_shown_in_the_words_of_their_files() {
+    let shown = gershun(&["norm", "show", "en-12464-1-2021", "34.2"]);
+    let table = String::from_utf8(shown.stdout).unwrap();
+    assert!(table.starts_with("EN 12464-1:2021: "), "{table}");
+    for word in ["two-sources", "one-source", "unverified", "cylindrical", "surrounding"] {
+        assert!(table.contains(word), "{word}: {table}");
+    }
+    assert!(!table.contains("TwoSources") && !table.contains("Unverified"), "{table}");
+    let list = String::from_utf8(gershun(&["norm", "list"]).stdout).unwrap();
+    assert!(list.contains("en-12464-1-2021") && list.contains("EN 12464-1:2021"), "{list}");
+}

@@ -7,7 +7,9 @@ use std::path::Path;
 
 use gershun::geometry::DVec3;
 use gershun::material::Bsdf;
+use gershun::plan::Subject;
 use gershun::project::{AreaShape, Diagnostic, Goal, LoadOptions, Project, load};
+use gershun::quantity::Quantity;
 
 const GOOD: &str = r#"[project]
 name = "Office"
@@ -613,9 +615,92 @@ fn one_mistake_does_not_raise_false_alarms() {
         ("box = {", "file = \"none.glb\" #"),
         ("u = [2, 0, 0]", "u = [0, 0, 0]"),
         ("lambert = { flux = 3600 }", "file = \"none.ldt\""),
+        // What could not be read at all is not missing where it is referred to.
+        ("maintenance = 0.8", "maintenance = \"good\""),
+        ("name = \"Desk\"\nrect", "name = \"Desk\"\nborder = \"wide\"\nrect"),
+        ("name = \"Desk\"\nrect", "nmae = \"Desk\"\nrect"),
+        ("eye = [4, 1, 1.2]", "eye = [4, 1]"),
+        ("[scene]", "[materials]\nFloor = 0.3\n[scene]"),
+        // A misspelt key explains why the right one is not there.
+        ("lambert = {", "lambret = {"),
+        ("field = {", "feild = {"),
+        ("rect = { origin", "rekt = { origin"),
+        ("[scene]", "[materials]\nFloor = { reflectanse = 0.3 }\n[scene]"),
+        ("sweep = {", "swep = {"),
+        // Nothing is known of a file that is not TOML.
+        ("luminaire = \"A\"", "luminaire = \"A"),
+        ("[scene]", "[norm]\nstandard = 12464\n[[room]]\nname = \"R\"\nrow = \"34.2\"\n[scene]"),
     ] {
-        let errors = load_text(&(good_but(old, new) + requirement)).unwrap_err();
+        let requirement = requirement.to_owned()
+            + "[[require]]\nviewpoint = \"Seat\"\nquantity = \"UGR\"\nmax = 19\n[declared]\nA = { ra = 80 }\n"
+            + "[light_scenes]\nday = { A = 1 }\n"
+            + "[[area]]\nname = \"Round\"\nkind = \"surrounding\"\nof = \"Desk\"\n"
+            + "rect = { origin = [0, 0, 0.75], u = [4, 0, 0], v = [0, 3, 0] }\n";
+        let errors = load_text(&(good_but(old, new) + &requirement)).unwrap_err();
         assert_eq!(errors.len(), 1, "{}", all(&errors));
         println!("{}\n", errors[0]);
     }
+}
+
+#[test]
+fn a_requirement_is_judged_like_the_norm_by_the_scene_and_the_table_of_its_subject() {
+    let text = good_but("name = \"Seat\"", "name = \"Seat\"\nlight_scene = \"late\"")
+        + "\n[light_scenes]\nday = { A = 1 }\nlate = { A = 0.5 }\n"
+        + "[[require]]\nviewpoint = \"Seat\"\nquantity = \"UGR\"\nmax = 19\n"
+        + "[[require]]\nviewpoint = \"Seat\"\nquantity = \"UGR\"\nmax = 19\nlight_scene = \"day\"\n"
+        + "[[require]]\nroom = \"Office\"\nquantity = \"UGR\"\nmax = 19\n";
+    let with_norm = text.clone() + "[norm]\nstandard = \"en-12464-1-2021\"\nrow = \"34.2\"\n";
+    for text in [text, with_norm] {
+        let project = load_text(&text).unwrap_or_else(|e| panic!("{}", all(&e)));
+        let plan = gershun::plan::plan(&project, &project.worlds[0]).unwrap();
+        let required = &plan.rooms[0].requirements;
+        let own: Vec<_> = required.iter().filter(|r| r.standard == "project").collect();
+        assert_eq!(own.iter().map(|r| r.light_scene).collect::<Vec<_>>(), [1, 0, 0]);
+        for table in required.iter().filter(|r| r.quantity == Quantity::Ugr && r.subject_name == "Office") {
+            assert!(matches!(table.subject, Subject::UgrTable(0.25)), "{table:?}");
+        }
+    }
+}
+
+#[test]
+fn what_no_value_could_ever_decide_is_a_mistake_and_not_left_unassessed() {
+    for (requirement, message) in [
+        ("room = \"Office\"\nquantity = \"E_h\"", "E_h is no quantity of a room"),
+        ("area = \"Desk\"\nquantity = \"UGR\"", "UGR is no quantity of an area"),
+        ("viewpoint = \"Seat\"\nquantity = \"E_cyl\"", "E_cyl is no quantity of a viewpoint"),
+        ("area = \"Desk\"\nquantity = \"E_h\"\nstatistic = \"value\"", "no statistic \"value\" of E_h"),
+        ("viewpoint = \"Seat\"\nquantity = \"UGR\"\nstatistic = \"mean\"", "no statistic \"mean\" of UGR"),
+    ] {
+        let text = format!("{GOOD}\n[[require]]\n{requirement}\nmin = 1\n");
+        let errors = load_text(&text).unwrap_err();
+        assert_eq!(errors.len(), 1, "{}", all(&errors));
+        assert!(errors[0].message.contains(message) && errors[0].line > 0, "{}", errors[0]);
+    }
+}
+
+#[test]
+fn walls_that_the_norm_asks_for_are_called_like_their_surfaces() {
+    let walls = |room: &str| -> Vec<String> {
+        let text = format!("{room}\n[norm]\nstandard = \"en-12464-1-2021\"\nrow = \"34.2\"\n");
+        let project = load_text(&text).unwrap_or_else(|e| panic!("{}", all(&e)));
+        let plan = gershun::plan::plan(&project, &project.worlds[0]).unwrap();
+        let names = plan.rooms[0].areas.iter().map(|area| area.name.clone());
+        names.filter(|name| name.to_lowercase().contains("wall")).collect()
+    };
+    let rest = "reflectances = { floor = 0.2, walls = 0.5, ceiling = 0.7 }";
+    // Clockwise, from the north-east: names follow the compass, not the order of writing.
+    let hall = format!(
+        "[materials]\nWin = {{ glass = 0.9 }}\n[[room]]\nname = \"Hall\"\nheight = 3\n{rest}\n\
+         footprint = [[6, 4], [6, 0], [0, 0], [0, 4]]\n\
+         openings = [{{ wall = \"Wall_S\", from = [1, 1], to = [3, 2], material = \"Win\" }}]"
+    );
+    let mut found = walls(&hall);
+    found.sort();
+    assert_eq!(found, ["Hall · Wall_E", "Hall · Wall_N", "Hall · Wall_S", "Hall · Wall_W"]);
+    let corner = format!(
+        "[[room]]\nname = \"L\"\nheight = 3\n{rest}\n\
+         footprint = [[0, 0], [8, 0], [8, 4], [4, 4], [4, 8], [0, 8]]"
+    );
+    let expected: Vec<String> = (1..=6).map(|number| format!("L · Wall_{number}")).collect();
+    assert_eq!(walls(&corner), expected);
 }

@@ -20,7 +20,7 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
     let mut specs: Vec<AreaSpec> = world.areas.clone();
     for (index, room) in world.rooms.iter().enumerate() {
         if !world.areas.iter().any(|area| area.room == index) {
-            let own = norm_areas(project, room, index);
+            let own = norm_areas(project, &world.scene, room, index);
             if !own.is_empty() {
                 plan.reasons.push(format!(
                     "Room \"{}\" lists no areas: {} were made from its outline (working plane, walls, ceiling, volume).",
@@ -75,7 +75,7 @@ fn row_of(project: &Project, world: &World, spec: &AreaSpec) -> Option<String> {
 }
 
 /// Areas for a room that lists none: the whole working plane, a volume at eye height, walls, ceiling.
-fn norm_areas(project: &Project, room: &Room, index: usize) -> Vec<AreaSpec> {
+fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: usize) -> Vec<AreaSpec> {
     let Some(norm) = &project.norm else { return Vec::new() };
     let Some(reference) = room.row.as_ref().or(norm.row.as_ref()) else { return Vec::new() };
     let Some(row) = norm.standard.row(reference) else { return Vec::new() };
@@ -114,13 +114,46 @@ fn norm_areas(project: &Project, room: &Room, index: usize) -> Vec<AreaSpec> {
         ),
     ];
     let count = room.footprint.len();
+    let names = wall_names(scene, room);
     for (number, &a) in room.footprint.iter().enumerate() {
         let b = room.footprint[(number + 1) % count];
         let origin = DVec3::new(b.x, b.y, room.floor_m);
         let shape = AreaShape::Rect { origin, u: (a - b).extend(0.0), v: DVec3::Z * room.height_m };
-        areas.push(spec(&format!("wall {}", number + 1), AreaKind::Surface, shape, 0.0));
+        areas.push(spec(&names[number], AreaKind::Surface, shape, 0.0));
     }
     areas
+}
+
+/// Names of the walls in the order of the footprint: those of the surfaces that stand there, since
+/// materials and areas call them so; numbers where a surface is several walls, as CAD files have it.
+fn wall_names(scene: &Scene, room: &Room) -> Vec<String> {
+    let count = room.footprint.len();
+    let mesh = &scene.mesh;
+    let found: Vec<Option<&str>> = (0..count)
+        .map(|number| {
+            let (a, b) = (room.footprint[number], room.footprint[(number + 1) % count]);
+            let along = (b - a).normalize_or_zero();
+            let stands_there = |&wall: &u32| {
+                let mut own = (0..mesh.triangles.len()).filter(|&t| mesh.triangles[t].surface == wall);
+                own.any(|triangle| {
+                    mesh.corners(triangle).iter().all(|corner| {
+                        let p = DVec2::new(corner.x, corner.y) - a;
+                        let t = p.dot(along);
+                        p.perp_dot(along).abs() < 0.01 && t > -0.01 && t < (b - a).length() + 0.01
+                    })
+                })
+            };
+            let wall = room.walls.iter().copied().find(stands_there)?;
+            Some(mesh.surfaces[wall as usize].name.as_str())
+        })
+        .collect();
+    let unique = |name: &str| found.iter().filter(|other| **other == Some(name)).count() == 1;
+    if let Some(names) = found.iter().copied().collect::<Option<Vec<&str>>>()
+        && names.iter().all(|name| unique(name))
+    {
+        return names.into_iter().map(str::to_owned).collect();
+    }
+    (1..=count).map(|number| format!("wall {number}")).collect()
 }
 
 fn narrowest(footprint: &[DVec2]) -> f64 {

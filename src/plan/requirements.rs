@@ -6,9 +6,6 @@ use crate::outcome::Bound;
 use crate::project::{AreaKind, CustomSubject, Norm, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
 
-/// Spacing-to-height ratio of luminaire catalogues, where no norm says otherwise.
-const CATALOGUE_SHR: f64 = 0.25;
-
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     if let Some(norm) = &project.norm {
         for (index, room) in world.rooms.iter().enumerate() {
@@ -17,9 +14,14 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
         }
     }
     for requirement in &world.requirements {
-        let shr = project.norm.as_ref().map_or(CATALOGUE_SHR, |norm| norm.standard.application.ugr_shr.value);
-        let (room, subject, subject_name) = subject(world, plan, requirement, shr);
-        let light_scene = requirement.light_scene.unwrap_or(0);
+        let (room, subject, subject_name) = subject(project, world, plan, requirement);
+        // Like the norm's, a requirement of one's own is judged under the light scene of its subject.
+        let own_scene = match requirement.subject {
+            CustomSubject::Area(area) => world.areas[area].light_scene,
+            CustomSubject::Viewpoint(view) => world.viewpoints[view].light_scene,
+            CustomSubject::Room(_) => None,
+        };
+        let light_scene = requirement.light_scene.or(own_scene).unwrap_or(0);
         let bounds = [requirement.min.map(Bound::Min), requirement.max.map(Bound::Max)];
         for bound in bounds.into_iter().flatten() {
             plan.rooms[room].requirements.push(PlannedRequirement {
@@ -39,10 +41,10 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
 
 /// Room, subject and printed name of a `[[require]]`.
 fn subject(
+    project: &Project,
     world: &World,
     plan: &Plan,
     requirement: &crate::project::CustomRequirement,
-    shr: f64,
 ) -> (usize, Subject, String) {
     match requirement.subject {
         CustomSubject::Area(area) => {
@@ -64,7 +66,11 @@ fn subject(
         }
         CustomSubject::Room(room) => {
             let subject = match requirement.quantity {
-                Quantity::Ugr => Subject::UgrTable(shr),
+                // One ratio in a project: with another the same room has quite another UGR.
+                Quantity::Ugr => Subject::UgrTable(project.norm.as_ref().map_or_else(
+                    || norm::Application::default().ugr_shr.value,
+                    |norm| norm.standard.application.ugr_shr.value,
+                )),
                 Quantity::ColourRendering => Subject::ColourRendering,
                 _ => Subject::Missing("a room has no grid of its own: name one of its areas".into()),
             };

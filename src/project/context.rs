@@ -28,6 +28,8 @@ pub struct Context {
     pub text: String,
     /// Mistakes so far.
     pub diagnostics: Vec<Diagnostic>,
+    /// Places of tables with unknown keys: what seems missing there may only be misspelt.
+    pub misspelt: Vec<Range<usize>>,
     /// Notes so far.
     pub biases: Vec<String>,
     /// Files read so far.
@@ -45,6 +47,13 @@ impl Context {
             Diagnostic::at(&self.file, &self.text, span.clone(), message.into(), hint.to_owned());
         if !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Reports that something is missing in the table at `span`, unless a key of it was unknown.
+    pub fn missing(&mut self, span: &Range<usize>, message: impl Into<String>, hint: &str) {
+        if !self.misspelt.contains(span) {
+            self.error(span, message, hint);
         }
     }
 

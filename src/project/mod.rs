@@ -61,6 +61,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Project, Vec<Diagnosti
         file: shown,
         text,
         diagnostics: Vec::new(),
+        misspelt: Vec::new(),
         biases: Vec::new(),
         inputs: Vec::new(),
         allow_outside: options.allow_outside,

@@ -12,6 +12,8 @@ use super::diagnostics::suggestion;
 use super::schema::{At, File, LightSceneEntry, Named};
 
 type Value<'i> = Spanned<DeValue<'i>>;
+/// Section and name of an entry that could not be read.
+type Lost = (&'static str, Option<At<String>>);
 
 /// Top-level tables.
 const SECTIONS: &[&str] = &[
@@ -43,6 +45,7 @@ pub fn read(text: &str, context: &mut Context) -> File {
             let span = error.span().unwrap_or_default();
             context.error(&span, error.message().trim().to_owned(), "");
         }
+        file.rooms_lost = true;
         return file;
     }
     for (key, value) in document.into_inner() {
@@ -53,27 +56,32 @@ pub fn read(text: &str, context: &mut Context) -> File {
                 file.scene = spanned(value, context);
                 file.rooms_lost |= file.scene.is_none();
             }
-            "materials" => file.materials = named(value, context),
-            "luminaires" => file.luminaires = named(value, context),
+            "materials" => file.materials = named("materials", value, &mut file.lost, context),
+            "luminaires" => file.luminaires = named("luminaires", value, &mut file.lost, context),
             "room" => {
                 let count = value.get_ref().as_array().map_or(1, |rooms| rooms.len());
-                file.rooms = list(value, &span, context);
+                file.rooms = list("room", value, &span, &mut file.lost, context);
                 file.rooms_lost |= file.rooms.len() < count;
             }
-            "furniture" => file.furniture = list(value, &span, context),
-            "place" => file.places = list(value, &span, context),
+            "furniture" => file.furniture = list("furniture", value, &span, &mut file.lost, context),
+            "place" => file.places = list("place", value, &span, &mut file.lost, context),
             "light_scenes" => {
                 file.has_light_scenes = true;
                 file.light_scenes = light_scenes(value, context);
             }
-            "area" => file.areas = list(value, &span, context),
-            "viewpoint" => file.viewpoints = list(value, &span, context),
+            "area" => file.areas = list("area", value, &span, &mut file.lost, context),
+            "viewpoint" => file.viewpoints = list("viewpoint", value, &span, &mut file.lost, context),
             "lists" => file.lists = spanned(value, context),
-            "glare_map" => file.glare_maps = list(value, &span, context),
-            "camera" => file.cameras = list(value, &span, context),
-            "norm" => file.norm = spanned(value, context),
-            "require" => file.requirements = list(value, &span, context),
-            "declared" => file.declared = named(value, context),
+            "glare_map" => file.glare_maps = list("glare_map", value, &span, &mut file.lost, context),
+            "camera" => file.cameras = list("camera", value, &span, &mut file.lost, context),
+            "norm" => {
+                file.norm = spanned(value, context);
+                if file.norm.is_none() {
+                    file.lost.push(("norm", None));
+                }
+            }
+            "require" => file.requirements = list("require", value, &span, &mut file.lost, context),
+            "declared" => file.declared = named("declared", value, &mut file.lost, context),
             "accuracy" => file.accuracy = table(value, context).unwrap_or_default(),
             other => {
                 let hint = suggestion(other, SECTIONS.iter().copied());
@@ -87,6 +95,7 @@ pub fn read(text: &str, context: &mut Context) -> File {
 /// Reads one table, reporting all its unknown keys and at most one other mistake.
 fn table<T: DeserializeOwned>(mut value: Value<'_>, context: &mut Context) -> Option<T> {
     let span = value.span();
+    let mut meant: Vec<String> = Vec::new();
     loop {
         let error = match T::deserialize(value.clone().into_deserializer()) {
             Ok(read) => return Some(read),
@@ -94,8 +103,17 @@ fn table<T: DeserializeOwned>(mut value: Value<'_>, context: &mut Context) -> Op
         };
         let place = error.span().unwrap_or(span.clone());
         let (message, hint) = explain(error.message());
+        // A key that was misspelt is missing too; once is enough.
+        let missing = error.message().strip_prefix("missing field `").and_then(|rest| rest.split('`').next());
+        if missing.is_some_and(|key| meant.contains(&format!("did you mean \"{key}\"?"))) {
+            return None;
+        }
         context.error(&place, message, &hint);
+        meant.push(hint);
         let unknown = error.message().starts_with("unknown field");
+        if unknown {
+            context.misspelt.push(span.clone());
+        }
         if !unknown || !remove_key(value.get_mut(), &place) {
             return None;
         }
@@ -107,27 +125,59 @@ fn spanned<T: DeserializeOwned>(value: Value<'_>, context: &mut Context) -> Opti
     table(value, context).map(|read| Spanned::new(span, read))
 }
 
-fn named<T: DeserializeOwned>(value: Value<'_>, context: &mut Context) -> Vec<Named<T>> {
-    entries(value, context)
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, spanned(value, context)?)))
-        .collect()
+fn named<T: DeserializeOwned>(
+    section: &'static str,
+    value: Value<'_>,
+    lost: &mut Vec<Lost>,
+    context: &mut Context,
+) -> Vec<Named<T>> {
+    let mut read = Vec::new();
+    for (name, value) in entries(value, context) {
+        match spanned(value, context) {
+            Some(entry) => read.push((name, entry)),
+            None => lost.push((section, Some(name))),
+        }
+    }
+    read
 }
 
-fn list<T: DeserializeOwned>(value: Value<'_>, key: &Range<usize>, context: &mut Context) -> Vec<At<T>> {
-    match value.into_inner() {
-        DeValue::Array(items) => items.into_iter().filter_map(|item| spanned(item, context)).collect(),
+fn list<T: DeserializeOwned>(
+    section: &'static str,
+    value: Value<'_>,
+    key: &Range<usize>,
+    lost: &mut Vec<Lost>,
+    context: &mut Context,
+) -> Vec<At<T>> {
+    let items = match value.into_inner() {
+        DeValue::Array(items) => items,
         DeValue::Table(_) => {
             let message = "this section is a list".to_owned();
             context.error(key, message, "write it with double brackets: [[…]]");
-            Vec::new()
+            lost.push((section, None));
+            return Vec::new();
         }
         other => {
             let message = format!("expected a list of tables, found {}", other.type_str());
             context.error(key, message, "");
-            Vec::new()
+            lost.push((section, None));
+            return Vec::new();
+        }
+    };
+    let mut read = Vec::new();
+    for item in items {
+        let name = name_of(&item);
+        match spanned(item, context) {
+            Some(entry) => read.push(entry),
+            None => lost.push((section, name)),
         }
     }
+    read
+}
+
+/// The name under which an entry of a list would be known.
+fn name_of(item: &Value<'_>) -> Option<At<String>> {
+    let name = item.get_ref().as_table()?.get("name")?;
+    Some(Spanned::new(name.span(), name.get_ref().as_str()?.to_owned()))
 }
 
 fn light_scenes(value: Value<'_>, context: &mut Context) -> Vec<LightSceneEntry> {
@@ -196,5 +246,12 @@ fn explain(message: &str) -> (String, String) {
         Some((found, _)) => format!("{found}expected a table {{ … }}"),
         None => message.trim().to_owned(),
     };
-    (message, String::new())
+    let number = message.contains("floating point") || message.contains("integer");
+    let hint = match quoted[..] {
+        [number_text, ..] if number && message.ends_with("expected a string") => {
+            format!("write it in quotes: \"{number_text}\"")
+        }
+        _ => String::new(),
+    };
+    (message, hint)
 }

@@ -20,6 +20,9 @@ pub type LightSceneEntry = (At<String>, Vec<(At<String>, At<f64>)>);
 pub struct File {
     /// A scene or a room could not be read, so that nothing can be said about what lies where.
     pub rooms_lost: bool,
+    /// Entries that could not be read, by section; without a name where even that is unknown. They
+    /// were reported: whoever refers to them made no second mistake.
+    pub lost: Vec<(&'static str, Option<At<String>>)>,
     pub project: ProjectSection,
     pub scene: Option<At<SceneSection>>,
     pub materials: Vec<Named<MaterialSection>>,
@@ -38,6 +41,19 @@ pub struct File {
     pub requirements: Vec<At<RequireSection>>,
     pub declared: Vec<Named<DeclaredSection>>,
     pub accuracy: AccuracySection,
+}
+
+impl File {
+    /// Whether an entry of this name may have been lost.
+    pub fn may_have_lost(&self, section: &str, name: &str) -> bool {
+        let mut lost = self.lost.iter().filter(|(of, _)| *of == section);
+        lost.any(|(_, known)| known.as_ref().is_none_or(|known| known.get_ref() == name))
+    }
+
+    /// Names of entries that were lost.
+    pub fn lost_names<'a>(&'a self, section: &'a str) -> impl Iterator<Item = &'a At<String>> {
+        self.lost.iter().filter(move |(of, _)| *of == section).filter_map(|(_, name)| name.as_ref())
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -125,7 +125,10 @@ fn margin(lang: Lang, requirement: &Requirement) -> String {
 
 fn place(requirement: &Requirement, naming: Naming) -> String {
     let mut parts = Vec::new();
-    if naming.room {
+    // Areas that a norm makes are named after their room already.
+    let named =
+        requirement.subject.strip_prefix(&requirement.room).is_some_and(|rest| rest.starts_with(" · "));
+    if naming.room && !named {
         parts.push(requirement.room.as_str());
     }
     if requirement.subject != requirement.room || !naming.room {

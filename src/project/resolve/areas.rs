@@ -13,7 +13,7 @@ use crate::grid::GridRule;
 use crate::project::choices::AreaGrid;
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
-use crate::project::schema::{AreaSection, At, RectSection};
+use crate::project::schema::{AreaSection, At, File, RectSection};
 use crate::project::{AreaKind, AreaShape, AreaSpec, LightScene};
 use crate::quantity::{Quantity, SPELLINGS};
 
@@ -23,12 +23,8 @@ const SMALLEST_M: f64 = 1e-3;
 const MAX_POINTS: usize = 1_000_000;
 
 /// Adds all areas to their worlds.
-pub fn add(
-    sections: &[At<AreaSection>],
-    drafts: &mut [Draft],
-    light_scenes: &[LightScene],
-    context: &mut Context,
-) {
+pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], context: &mut Context) {
+    let sections = &file.areas;
     let mut surroundings: Vec<(usize, usize, At<String>)> = Vec::new();
     for section in sections {
         let span = section.span();
@@ -74,7 +70,8 @@ pub fn add(
         let written = sections.iter().map(At::get_ref).any(|section| {
             section.name.get_ref() == of.get_ref() && section.kind.is_none_or(|kind| kind == AreaKind::Task)
         });
-        let lost = written && !areas.iter().any(|area| area.name == *of.get_ref());
+        let lost = file.may_have_lost("area", of.get_ref())
+            || written && !areas.iter().any(|area| area.name == *of.get_ref());
         if task.is_none() && !lost {
             let tasks = areas.iter().filter(|area| area.kind == AreaKind::Task);
             let hint = suggestion(of.get_ref(), tasks.map(|area| area.name.as_str()));
@@ -177,7 +174,7 @@ fn shape(
             "area \"{}\" needs exactly one of rect, polygon, surface, points",
             section.name.get_ref()
         );
-        context.error(span, message, "");
+        context.missing(span, message, "");
         return None;
     }
     if let Some(surface) = &section.surface {

@@ -10,7 +10,7 @@ use crate::photometry::{self, IntensityDistribution, Opening};
 use crate::project::choices::{Factor, OpeningChoice};
 use crate::project::context::{Context, SMALL_FILE};
 use crate::project::diagnostics::Diagnostic;
-use crate::project::schema::{At, LuminaireSection, Named};
+use crate::project::schema::{At, File, LuminaireSection};
 use crate::units::Lumens;
 
 /// An entry of `[luminaires]`.
@@ -49,24 +49,30 @@ impl Kind {
 }
 
 /// Checks all entries and reads their files.
-pub fn kinds(sections: &[Named<LuminaireSection>], context: &mut Context) -> Vec<Kind> {
-    sections
-        .iter()
-        .map(|(name, section)| Kind {
-            name: name.get_ref().clone(),
-            base: luminaire_type(name, section.get_ref(), context),
-            own_maintenance: section.get_ref().maintenance.is_some(),
-            body: section.get_ref().body.clone(),
-            made: Vec::new(),
-        })
-        .collect()
+pub fn kinds(file: &File, context: &mut Context) -> Vec<Kind> {
+    let read = file.luminaires.iter().map(|(name, section)| Kind {
+        name: name.get_ref().clone(),
+        base: luminaire_type(name, section, context),
+        own_maintenance: section.get_ref().maintenance.is_some(),
+        body: section.get_ref().body.clone(),
+        made: Vec::new(),
+    });
+    let lost = file.lost_names("luminaires").map(|name| Kind {
+        name: name.get_ref().clone(),
+        base: None,
+        own_maintenance: false,
+        body: Vec::new(),
+        made: Vec::new(),
+    });
+    read.chain(lost).collect()
 }
 
 fn luminaire_type(
     name: &At<String>,
-    section: &LuminaireSection,
+    entry: &At<LuminaireSection>,
     context: &mut Context,
 ) -> Option<LuminaireType> {
+    let section = entry.get_ref();
     let maintenance =
         section.maintenance.as_ref().map_or(Some(Maintenance::NEW), |factor| maintenance(factor, context));
     if let Some(ra) = &section.ra {
@@ -78,7 +84,10 @@ fn luminaire_type(
     let sources = [section.file.is_some(), section.lambert.is_some(), section.point.is_some()];
     if sources.into_iter().filter(|given| *given).count() != 1 {
         let message = format!("luminaire \"{}\" needs exactly one of file, lambert, point", name.get_ref());
-        context.error(&name.span(), message, "");
+        let several = sources.into_iter().any(|given| given);
+        if several || !context.misspelt.contains(&entry.span()) {
+            context.error(&name.span(), message, "");
+        }
         return None;
     }
     let source = if let Some(file) = &section.file {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::material::{Bsdf, Material, Pane};
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
-use crate::project::schema::{At, MaterialSection, Named};
+use crate::project::schema::{At, File, MaterialSection};
 
 /// The materials of the project.
 #[derive(Debug)]
@@ -35,11 +35,16 @@ pub enum Lookup {
 
 impl Palette {
     /// Checks all entries.
-    pub fn new(sections: &[Named<MaterialSection>], context: &mut Context) -> Self {
-        let entries = sections
-            .iter()
-            .map(|(name, section)| Entry { name: name.clone(), bsdf: bsdf(section, context), used: false })
-            .collect();
+    pub fn new(file: &File, context: &mut Context) -> Self {
+        let read = file.materials.iter();
+        let read = read.map(|(name, section)| Entry {
+            name: name.clone(),
+            bsdf: bsdf(section, context),
+            used: false,
+        });
+        let lost = file.lost_names("materials");
+        let lost = lost.map(|name| Entry { name: name.clone(), bsdf: None, used: true });
+        let entries = read.chain(lost).collect();
         Self { entries, known: Vec::new() }
     }
 
@@ -161,7 +166,7 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
             reflectance: reflectance.as_ref().map_or(0.0, |value| *value.get_ref()),
         }),
         _ => {
-            context.error(
+            context.missing(
                 &whole,
                 "a material is exactly one of reflectance, mirror, glass, opal, emit",
                 "only `emit` may be given together with `reflectance`",

@@ -26,7 +26,7 @@ use materials::Palette;
 /// Resolves a file; mistakes go into the context, and `None` means there are some.
 pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     let info = settings::info(&file.project, context);
-    let mut palette = Palette::new(&file.materials, context);
+    let mut palette = Palette::new(file, context);
     let mut drafts = rooms::drafts(file, &info.name, &mut palette, context);
     let footprints = file.rooms.iter().filter(|room| room.get_ref().footprint.is_some());
     let expected = usize::from(file.scene.is_some()) + footprints.count();
@@ -41,10 +41,10 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     if rooms_complete {
         palette.report_unused(context);
     }
-    let kinds = luminaires::kinds(&file.luminaires, context);
+    let kinds = luminaires::kinds(file, context);
     places::add(file, kinds, &mut drafts, context);
     let light_scenes = settings::light_scenes(file, &drafts, context);
-    areas::add(&file.areas, &mut drafts, &light_scenes, context);
+    areas::add(file, &mut drafts, &light_scenes, context);
     viewpoints::add(file, &mut drafts, &light_scenes, context);
     settings::requirements(file, &mut drafts, &light_scenes, context);
     let declared = settings::declared(file, &drafts, context);

@@ -101,7 +101,7 @@ fn read(
         (None, Some(array), None) => array_points(array.get_ref(), context),
         (None, None, Some(field)) => field_points(field, drafts, context),
         _ => {
-            context.error(span, "give exactly one of `at`, `array`, `field`", "");
+            context.missing(span, "give exactly one of `at`, `array`, `field`", "");
             None
         }
     }?;

@@ -104,7 +104,7 @@ pub fn check_rows(file: &File, norm: Option<&Norm>, context: &mut Context) {
     for row in of_norm.chain(of_rooms).chain(of_areas) {
         match norm {
             // A norm that could not be read was reported already.
-            None if file.norm.is_some() => {}
+            None if file.norm.is_some() || file.may_have_lost("norm", "") => {}
             None => {
                 let hint = "[norm] standard = \"en-12464-1-2021\"";
                 context.error(&row.span(), "a row needs a norm", hint);
@@ -183,12 +183,15 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             context.finite(&[*bound.get_ref()], &bound.span());
         }
         if bounds.into_iter().all(Option::is_none) {
-            context.error(&span, "a requirement needs `min` or `max`", "");
+            context.missing(&span, "a requirement needs `min` or `max`", "");
         }
         let subject = subject(section, &span, file, drafts, context);
         let (Some((world, subject)), Some(quantity)) = (subject, quantity) else {
             continue;
         };
+        if !suits(subject, quantity, &section.quantity, context) {
+            continue;
+        }
         let statistic = statistic.unwrap_or(Some(match (subject, quantity) {
             (CustomSubject::Viewpoint(_), _) | (_, Quantity::Ugr | Quantity::ColourRendering) => {
                 Statistic::Value
@@ -196,6 +199,13 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             (CustomSubject::Room(_) | CustomSubject::Area(_), _) => Statistic::Mean,
         }));
         let Some(statistic) = statistic else { continue };
+        let single = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering);
+        if let (Some(key), true) = (&section.statistic, single != (statistic == Statistic::Value)) {
+            let message = format!("no statistic \"{}\" of {}", key.get_ref(), section.quantity.get_ref());
+            let hint = if single { "leave it out" } else { "there is: mean, min, max, U0, Ud" };
+            context.error(&key.span(), message, hint);
+            continue;
+        }
         drafts[world].requirements.push(CustomRequirement {
             subject,
             quantity,
@@ -205,6 +215,22 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             light_scene,
         });
     }
+}
+
+/// Whether a quantity exists where it is required: what nothing could ever decide is a mistake, not
+/// a requirement that is left unassessed.
+fn suits(subject: CustomSubject, quantity: Quantity, name: &At<String>, context: &mut Context) -> bool {
+    let single = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering);
+    let (what, hint) = match subject {
+        CustomSubject::Room(_) if !single => ("a room", "it is measured on areas: name one, area = \"…\""),
+        CustomSubject::Area(_) if single => ("an area", "require it of a room or, UGR, of a viewpoint"),
+        CustomSubject::Viewpoint(_) if quantity != Quantity::Ugr => {
+            ("a viewpoint", "a viewpoint has UGR only")
+        }
+        CustomSubject::Room(_) | CustomSubject::Area(_) | CustomSubject::Viewpoint(_) => return true,
+    };
+    context.error(&name.span(), format!("{} is no quantity of {what}", name.get_ref()), hint);
+    false
 }
 
 fn subject(
@@ -238,14 +264,15 @@ fn subject(
         }
         _ => {
             let message = "a requirement concerns exactly one of room, area, viewpoint";
-            context.error(span, message, "");
+            context.missing(span, message, "");
             return None;
         }
     };
     // What was written but has a mistake of its own is not unknown.
     let areas = file.areas.iter().map(|area| &area.get_ref().name);
     let views = file.viewpoints.iter().map(|view| &view.get_ref().name);
-    let written = areas.chain(views).any(|known| known.get_ref() == name.get_ref());
+    let written = areas.chain(views).any(|known| known.get_ref() == name.get_ref())
+        || file.may_have_lost(what, name.get_ref());
     if found.is_none() && !written && !drafts.is_empty() {
         let hint = suggestion(name.get_ref(), known);
         context.error(&name.span(), format!("no {what} \"{}\"", name.get_ref()), &hint);
@@ -266,6 +293,7 @@ pub fn declared(file: &File, drafts: &[Draft], context: &mut Context) -> Vec<Dec
     for (name, section) in &file.declared {
         let section = section.get_ref();
         let mut known: Vec<&str> = file.luminaires.iter().map(|(n, _)| n.get_ref().as_str()).collect();
+        known.extend(file.lost_names("luminaires").map(|name| name.get_ref().as_str()));
         known.extend(room_names(drafts));
         if !known.contains(&name.get_ref().as_str()) && !drafts.is_empty() {
             let hint = suggestion(name.get_ref(), known);

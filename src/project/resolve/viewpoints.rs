@@ -134,7 +134,7 @@ fn directions(
         (None, None, Some(sweep)) => (DVec3::X, sweep.span()),
         (None, None, None) => {
             let hint = "direction = [x, y, z], target = [x, y, z] or sweep = { from, to, step }";
-            context.error(span, "the viewpoint looks nowhere", hint);
+            context.missing(span, "the viewpoint looks nowhere", hint);
             return None;
         }
     };

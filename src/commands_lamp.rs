@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use gershun::lamp::convert::Target;
 use gershun::lamp::{self, RULES, Severity, rules};
 use gershun::photometry::Finding;
-use gershun::project::{read_photometry, suggestion};
+use gershun::project::{is_same_file, read_photometry, suggestion};
 use gershun::report::{lamp as report, write_file};
 use rayon::prelude::*;
 
@@ -134,8 +134,7 @@ fn convert(input: &Path, output: &Path) -> Result<u8, String> {
     let target = Target::of_extension(&extension).ok_or_else(|| {
         format!("{}: unknown format \".{extension}\"\n  hint: name a file .ies or .ldt", output.display())
     })?;
-    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    if same(input, output) {
+    if is_same_file(input, output) {
         return Err(format!("{} would replace itself\n  hint: name another file", input.display()));
     }
     let lamp = read_only(input)?;

@@ -232,7 +232,9 @@ fn f32_and_obvhs_live_in_the_ray_tracer() {
 /// above: `project`'s structs lie below `plan`, `measure` and `outcome`; materials below geometry.
 const ORDER: &[&str] = &[
     "main",
+    "commands_lamp",
     "args",
+    "args_lamp",
     "lib",
     "report",
     "biases",

@@ -30,6 +30,11 @@ pub enum ReadError {
     },
 }
 
+/// Whether two paths name one existing file.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
 /// The bytes of a photometric file.
 ///
 /// # Errors

@@ -2,10 +2,12 @@
 //! that comes from solving (those of loading come with the project).
 
 use crate::emitters::Emitters;
+use crate::material::Bsdf;
 use crate::measure::{Answers, flux};
 use crate::outcome::{Bias, Requirement};
 use crate::project::World;
 use crate::quantity::Quantity;
+use crate::scene::Channel;
 use crate::{Method, Settings};
 
 pub(crate) fn add(
@@ -39,7 +41,26 @@ pub(crate) fn add(
         let glowing = emitters.mirrors.len();
         note(
             "Specular images of bright surfaces other than luminaires are part of the background, not glare sources.",
-            format!("{glowing} specular planes; images of luminaires in them do count as glare sources"),
+            format!(
+                "{glowing} specular planes; images of luminaires by one reflection in them do count as glare sources"
+            ),
+            Some(0.0),
+        );
+    }
+    let lit_from_behind =
+        |t: u32| matches!(*scene.bsdf(t), Bsdf::Opal { transmittance, .. } if transmittance > 0.0);
+    if (0..scene.mesh.triangles.len() as u32).any(lit_from_behind) {
+        note(
+            "Opal surfaces lit from behind are part of the background, not glare sources.",
+            "observers' UGR reads low where one is bright".into(),
+            Some(0.0),
+        );
+    }
+    if scene.channels.iter().any(|channel| matches!(channel, Channel::Surfaces { .. })) {
+        note(
+            "Luminous surfaces shine on both sides.",
+            "light of a side that faces out of the room counts as emitted and escaped in the flux balance"
+                .into(),
             Some(0.0),
         );
     }
@@ -47,7 +68,7 @@ pub(crate) fn add(
     let cut: u64 = answers.sheets.iter().map(|sheet| sheet.counts.cut).sum();
     if cut > 0 {
         note(
-            "Walks between perfect mirrors were cut.",
+            "Walks in a cavity without absorption were cut.",
             format!("{cut} walks"),
             Some(cut as f64 / rays.max(1) as f64),
         );

@@ -13,6 +13,9 @@ use crate::query::{Ray, Receiver};
 use crate::rng::{Rng, Stratified};
 use crate::sphere;
 
+/// Steps after which a walk is cut and counted: only a sealed cavity without absorption gets here.
+const MOST_STEPS: u32 = 100_000;
+
 /// Buffers reused from receiver to receiver.
 struct Desk {
     /// Luminance per channel seen by the current ray.
@@ -243,7 +246,7 @@ fn walk(prepared: &Prepared, start: Landing, rng: &mut Rng, desk: &mut Desk) {
     let scene = prepared.scene;
     desk.residual.fill(0.0);
     let mut here = start;
-    loop {
+    for _ in 0..MOST_STEPS {
         let (reflectance, transmittance) = scene.bsdf(here.triangle).diffuse();
         let albedo = reflectance + transmittance;
         for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, &here)) {
@@ -283,6 +286,7 @@ fn walk(prepared: &Prepared, start: Landing, rng: &mut Rng, desk: &mut Desk) {
         }
         here = next;
     }
+    desk.counts.cut += 1;
 }
 
 fn stored<'p>(prepared: &'p Prepared, landing: &Landing) -> &'p [f64] {

@@ -102,9 +102,10 @@ pub struct Check {
     /// Stop after this time at a block's end, e.g. 30s, 2m
     #[arg(long, value_name = "TIME", value_parser = duration)]
     pub time: Option<Duration>,
-    /// Compute exactly this many blocks (at least 2)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
-    pub blocks: Option<u32>,
+    /// Compute exactly this many blocks (at least 2); a list gives one number for each room or
+    /// CAD file solved on its own, as blocks_by_world in result.json, and repeats that run
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub blocks: Vec<u32>,
     /// Estimator
     #[arg(long, value_enum, default_value_t = MethodChoice::Auto)]
     pub method: MethodChoice,
@@ -249,7 +250,8 @@ impl Check {
                 MethodChoice::Path => Method::Path,
             },
             most_blocks,
-            exact_blocks: self.blocks.map(|n| n as usize),
+            exact_blocks: (!self.blocks.is_empty())
+                .then(|| self.blocks.iter().map(|&n| n as usize).collect()),
             seconds: self.time.map(|time| time.as_secs_f64()).or(file_time),
             relative,
             memory_bytes: self.memory,

@@ -55,7 +55,8 @@ pub struct Settings {
     /// Most blocks.
     pub most_blocks: usize,
     /// Exactly this many blocks, whatever the goal.
-    pub exact_blocks: Option<usize>,
+    /// One number for each world; the last one holds for all that follow.
+    pub exact_blocks: Option<Vec<usize>>,
     /// Wall time after which no further blocks are started, s.
     pub seconds: Option<f64>,
     /// Relative standard error of [`Goal::Verdict`] where nothing is required.
@@ -162,7 +163,7 @@ struct Total {
     biases: Vec<outcome::Bias>,
     tables: measure::room_ugr::Tables,
     counts: Counts,
-    blocks: usize,
+    blocks: Vec<usize>,
     stopped: Option<Stop>,
 }
 
@@ -188,9 +189,10 @@ fn solve_world(
     let alpha = 1.0 - project.accuracy.confidence;
     let bytes = plan.demand.rows() * world.scene.channels.len() * solve::PARTS * size_of::<f64>();
     let fitting = (settings.memory_bytes / bytes.max(1)).max(settings.least_blocks);
-    let most = settings.exact_blocks.unwrap_or(settings.most_blocks.min(fitting));
+    let exact = settings.exact_blocks.as_ref().and_then(|list| list.get(index).or(list.last()).copied());
+    let most = exact.unwrap_or(settings.most_blocks.min(fitting));
     let mut sheets: Vec<Sheet> = Vec::new();
-    let mut target = settings.exact_blocks.unwrap_or(settings.least_blocks);
+    let mut target = exact.unwrap_or(settings.least_blocks);
     let mut open = 0;
     loop {
         let finished = extend(&prepared, &mut sheets, target, settings, watch, started, |blocks| {
@@ -222,7 +224,7 @@ fn solve_world(
         let decided = open == 0 && required.iter().flatten().next().is_some();
         let stop = match (finished, project.accuracy.goal) {
             (Some(stop), _) => Some(stop),
-            (None, _) if settings.exact_blocks.is_some() => Some(Stop::Asked),
+            (None, _) if exact.is_some() => Some(Stop::Asked),
             (None, Goal::Verdict) if decided => Some(Stop::Certain),
             (None, Goal::Verdict)
                 if required.iter().all(Vec::is_empty) && context.accurate(settings.relative) =>
@@ -243,7 +245,7 @@ fn solve_world(
             for sheet in &sheets {
                 total.counts.add(sheet.counts);
             }
-            total.blocks = total.blocks.max(sheets.len());
+            total.blocks.push(sheets.len());
             biases::add(&mut total.biases, world, settings, &answers, prepared.emitters());
             return stop;
         }
@@ -332,7 +334,8 @@ impl Total {
                     Method::Path => "path",
                 }
                 .into(),
-                blocks: self.blocks,
+                blocks: self.blocks.iter().copied().max().unwrap_or(0),
+                blocks_by_world: self.blocks,
                 stopped: stopped.into(),
                 seed: project.accuracy.seed,
                 confidence: project.accuracy.confidence,

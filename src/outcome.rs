@@ -63,8 +63,10 @@ pub struct Bias {
 pub struct Solver {
     /// `links` or `path`.
     pub method: String,
-    /// Blocks used by the largest world.
+    /// Blocks of the world that took most.
     pub blocks: usize,
+    /// Blocks of each world (the box or CAD file, each footprint room), in project order.
+    pub blocks_by_world: Vec<usize>,
     /// Why it stopped: `verdicts certain`, `block limit`, `accuracy reached`, `time`, `interrupted`,
     /// `blocks asked for`. Told to the user and kept out of every file: `--blocks N` repeats a run that
     /// stopped after N blocks byte for byte, whatever stopped it.

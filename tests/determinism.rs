@@ -128,7 +128,8 @@ fn three_rooms_give_the_same_bytes_on_any_machine() {
 
 fn blocks(files: &Files) -> String {
     let result: serde_json::Value = serde_json::from_slice(&files[Path::new("result.json")]).expect("JSON");
-    result["solver"]["blocks"].as_u64().expect("a number of blocks").to_string()
+    let worlds = result["solver"]["blocks_by_world"].as_array().expect("a number of blocks for each world");
+    worlds.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }
 
 /// Catches: anything in the files that tells why a run stopped, joint intervals by another look.
@@ -142,6 +143,21 @@ fn a_number_of_blocks_repeats_a_run_that_stopped_by_itself() {
         println!("{arguments:?}: {blocks} blocks");
         same(&run, &report(&scene("box"), &["--blocks", &blocks]), &format!("{arguments:?}"));
     }
+}
+
+/// Catches: rooms that stopped at different numbers of blocks and cannot be repeated.
+#[test]
+fn a_list_of_blocks_repeats_rooms_that_stopped_apart() {
+    let folder = projects::folder(&format!("{ROOMS}[accuracy]\ngoal = {{ relative = 0.03 }}\n"), &[]);
+    let run = report(folder.path(), &[]);
+    let blocks = blocks(&run);
+    println!("blocks by room: {blocks}");
+    let numbers: Vec<&str> = blocks.split(',').collect();
+    assert!(
+        numbers.len() == 3 && numbers.iter().any(|n| *n != numbers[0]),
+        "{blocks}: no list is needed here"
+    );
+    same(&run, &report(folder.path(), &["--blocks", &blocks]), "repeated");
 }
 
 /// Catches: absolute paths in a file: the same project elsewhere is the same report.

@@ -18,7 +18,7 @@ struct ProvenanceFile<'a> {
     program_version: &'static str,
     seed: u64,
     method: &'a str,
-    blocks: usize,
+    blocks_by_world: &'a [usize],
     inputs: &'a [InputFile],
     files: Vec<FileRow>,
 }
@@ -37,7 +37,7 @@ pub fn provenance(outcome: &Outcome, files: &[(String, Vec<u8>)]) -> Result<Vec<
         program_version: env!("CARGO_PKG_VERSION"),
         seed: outcome.solver.seed,
         method: &outcome.solver.method,
-        blocks: outcome.solver.blocks,
+        blocks_by_world: &outcome.solver.blocks_by_world,
         inputs: &outcome.inputs,
         files: files
             .iter()

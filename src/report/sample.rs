@@ -398,6 +398,7 @@ pub fn outcome() -> Outcome {
         solver: Solver {
             method: "links".into(),
             blocks: 64,
+            blocks_by_world: vec![64, 32],
             stopped: "block limit".into(),
             seed: 1,
             confidence: 0.95,

@@ -35,7 +35,7 @@ pub fn run_folder(path: &Path, blocks: usize, effort: Effort) -> Outcome {
     let project = load(path, &LoadOptions::default()).unwrap_or_else(|errors| {
         panic!("{}", errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
     });
-    let settings = Settings { exact_blocks: Some(blocks), effort, ..Settings::default() };
+    let settings = Settings { exact_blocks: Some(vec![blocks]), effort, ..Settings::default() };
     let interrupted = AtomicBool::new(false);
     gershun::run(&project, &settings, &Watch { progress: &|_| {}, interrupted: &interrupted })
         .unwrap_or_else(|error| panic!("{error}"))

@@ -460,6 +460,7 @@ fn types(world: &World, room: &Room) -> Vec<TypeOutcome> {
         }
         let m = kind.maintenance;
         types.push(TypeOutcome {
+            distribution: kind.distribution.clone(),
             name: kind.name.clone(),
             description: kind.description.clone(),
             file: kind.file.clone(),

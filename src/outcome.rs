@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use crate::grid::Grid;
+use crate::photometry::IntensityDistribution;
 use crate::project::{AreaKind, Compare, Info, InputFile};
 use crate::quantity::{Quantity, Statistic};
 use crate::units::Undefined;
@@ -137,8 +138,11 @@ pub struct LuminaireOutcome {
 }
 
 /// A luminaire type in the schedule.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TypeOutcome {
+    /// Its intensities at initial flux, for the polar diagram.
+    #[serde(skip)]
+    pub distribution: IntensityDistribution,
     /// Type name.
     pub name: String,
     /// From the photometric file.

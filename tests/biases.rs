@@ -28,7 +28,8 @@ fn what_a_run_leaves_out_stands_in_its_list() {
     let furniture = "[[furniture]]\nat = [0.5, 0.5, 0.1]\nsize = [0.4, 0.4, 0.5]\nmaterial = \"Opal\"\n\
                      [[furniture]]\nat = [4.0, 3.0, 0.1]\nsize = [0.4, 0.4, 0.5]\nmaterial = \"Lit\"";
     let met = project(materials, "point = { flux = 1000 }", furniture);
-    for words in ["two or more specular reflections", "Specular images", "Opal surfaces", "Luminous surfaces"] {
+    for words in ["two or more specular reflections", "Specular images", "Opal surfaces", "Luminous surfaces"]
+    {
         assert!(listed(&met, words), "\"{words}\" is not listed: {:?}", met.biases);
     }
     // Facing mirrors of 0.9 carry much of a point's light by double reflections: the figure is measured.

@@ -99,10 +99,25 @@ pub fn files(outcome: &Outcome, options: &Options) -> Result<Vec<(String, Vec<u8
     for (name, svg) in plan::files(outcome, languages[0]) {
         files.push((format!("plan/{name}"), svg.into_bytes()));
     }
+    files.extend(luminaires(outcome));
     files.push(("report.html".to_owned(), page::page(outcome, &languages).into_bytes()));
     let provenance = provenance::provenance(outcome, &files)?;
     files.push((folder::MANIFEST.to_owned(), provenance));
     Ok(files)
+}
+
+/// The polar diagram of every luminaire type, once.
+fn luminaires(outcome: &Outcome) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    for kind in outcome.rooms.iter().flat_map(|room| &room.types) {
+        let name = format!("luminaires/{}.svg", plan::file_name(&kind.name));
+        let dark = !(kind.distribution.flux().0 > 0.0);
+        if !dark && !files.iter().any(|(known, _)| known.to_lowercase() == name.to_lowercase()) {
+            let svg = lamp::diagram(&kind.name, &kind.description, &kind.distribution);
+            files.push((name, svg.into_bytes()));
+        }
+    }
+    files
 }
 
 /// JSON Schema of result.json.
@@ -158,10 +173,12 @@ mod tests {
                 drawings += usize::from(extension == "svg");
             }
         }
-        assert_eq!(
-            drawings,
-            sample::outcome().rooms.iter().flat_map(|r| &r.areas).map(|a| a.fields.len()).sum::<usize>()
-        );
+        let rooms = sample::outcome().rooms;
+        let plans: usize = rooms.iter().flat_map(|r| &r.areas).map(|a| a.fields.len()).sum();
+        let mut kinds: Vec<&str> = rooms.iter().flat_map(|r| &r.types).map(|t| t.name.as_str()).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        assert_eq!(drawings, plans + kinds.len(), "every plan and one polar diagram a luminaire type");
     }
 
     #[test]

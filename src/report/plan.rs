@@ -55,7 +55,7 @@ pub fn files(outcome: &Outcome, lang: Lang) -> Vec<(String, String)> {
 }
 
 /// A name as part of a file name on any system: three parts stay below 255 bytes.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let mut kept = String::new();
     for c in name.chars() {
         if kept.len() + c.len_utf8() > 60 {

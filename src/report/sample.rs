@@ -5,9 +5,11 @@ use glam::{DVec2, DVec3};
 
 use crate::grid::{Exclusion, Grid, GridPoint};
 use crate::outcome::*;
+use crate::photometry::IntensityDistribution;
 use crate::project::{AreaKind, Compare, Info, InputFile};
 use crate::quantity::{Quantity, Statistic};
-use crate::units::Undefined;
+
+use crate::units::{Lumens, Undefined};
 
 /// A name of a task area that must be escaped everywhere.
 pub const NASTY: &str = "Desk <&\"'; a/b\\c, стол №1";
@@ -193,6 +195,7 @@ fn balance(light_scene: &str, emitted_lm: f64) -> FluxBalance {
 
 fn office() -> RoomOutcome {
     let kind = |name: &str, description: &str, power_w| TypeOutcome {
+        distribution: IntensityDistribution::lambert(Lumens(3900.0)),
         name: name.into(),
         description: description.into(),
         file: format!("photometry/{name}.ldt"),

@@ -8,7 +8,7 @@ mod ugr;
 
 pub use json::info as info_json;
 pub use lint::{explanation, human as lint_human, json as lint_json, sarif as lint_sarif};
-pub use polar::polar;
+pub use polar::{diagram, polar};
 pub use text::info_text;
 pub use ugr::{csv as ugr_csv, text as ugr_text};
 

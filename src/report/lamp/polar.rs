@@ -6,6 +6,7 @@ use super::super::number::{figures, fixed};
 use super::super::words::Lang;
 use super::format_name;
 use crate::lamp::{Lamp, azimuth_deg, beam};
+use crate::photometry::IntensityDistribution;
 
 const SIZE: [f64; 2] = [520.0, 610.0];
 const CENTRE: Px = [260.0, 300.0];
@@ -17,22 +18,25 @@ const INK: Rgb = [40, 40, 40];
 const RULE: Rgb = [205, 205, 205];
 const STEP_DEG: f64 = 0.5;
 
-/// The diagram as SVG.
+/// The diagram of a photometric file as SVG.
 pub fn polar(lamp: &Lamp) -> String {
-    let distribution = &lamp.photometry.distribution;
+    let about = format!("{} · {}", format_name(lamp.photometry.format), lamp.photometry.description);
+    diagram(file_name(&lamp.file), &about, &lamp.photometry.distribution)
+}
+
+/// The diagram of an intensity distribution that shines at all.
+pub fn diagram(name: &str, about: &str, distribution: &IntensityDistribution) -> String {
     let (peak_cd, flux_lm) = (distribution.max_intensity().0, distribution.flux().0);
     let ring_cd = ring_step(peak_cd);
     let rings = (peak_cd / ring_cd - 1e-9).ceil().max(1.0);
     let px_per_cd = RADIUS / (rings * ring_cd);
     let mut canvas = Canvas::new(SIZE[0], SIZE[1]);
-    let name = file_name(&lamp.file);
     text(&mut canvas, [20.0, 26.0], name, 15.0, Anchor::Start, Weight::Bold, INK);
-    let sub = format!("{} · {}", format_name(lamp.photometry.format), lamp.photometry.description);
-    let sub: String = sub.chars().take(78).collect();
+    let sub: String = about.chars().take(78).collect();
     text(&mut canvas, [20.0, 46.0], &sub, 11.0, Anchor::Start, Weight::Normal, INK);
     grid(&mut canvas, rings as usize, ring_cd, px_per_cd, flux_lm);
     for (c_deg, colour, width) in [(0.0, C0, 2.2), (90.0, C90, 1.4)] {
-        canvas.line(&curve(lamp, c_deg, px_per_cd), colour, width);
+        canvas.line(&curve(distribution, c_deg, px_per_cd), colour, width);
     }
     let y = SIZE[1] - 74.0;
     for (k, (c_deg, colour, label)) in
@@ -119,8 +123,7 @@ fn grid(canvas: &mut Canvas, rings: usize, ring_cd: f64, px_per_cd: f64, flux_lm
 }
 
 /// The half-plane C to the right and C + 180° to the left, as one closed line.
-fn curve(lamp: &Lamp, c_deg: f64, px_per_cd: f64) -> Vec<Px> {
-    let distribution = &lamp.photometry.distribution;
+fn curve(distribution: &IntensityDistribution, c_deg: f64, px_per_cd: f64) -> Vec<Px> {
     let count = (180.0 / STEP_DEG) as i32;
     let half = |turn: f64, sign: f64| {
         let at = move |k: i32| {

@@ -104,5 +104,12 @@ fn box_rooms_match_the_radiosity_reference() {
         );
         assert!(5.0 * se <= 0.015, "cannot resolve 1.5 %: se {se}");
         assert!(z <= 5.0, "{z} standard errors");
+        // The broken twin: walls that reflect 0.04 more change every value by some 3 %.
+        let mut materials = scene.materials.clone();
+        materials[1] = lambert("walls", scene.materials[1].bsdf.albedo(1.0) + 0.04);
+        let twin = Scene::new(scene.mesh.clone(), materials, scene.luminaires.clone()).expect("a valid twin");
+        let [twin_z, ..] = compare(&twin, &demand, &truth, Method::Links, effort, 1024);
+        println!("twin: z {twin_z:.1}");
+        assert!(twin_z > 5.0, "the twin passes: {twin_z} standard errors");
     }
 }

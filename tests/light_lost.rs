@@ -1,4 +1,5 @@
-//! Found by an independent review of the light transport and its intervals.
+//! Light, glare and intervals that were once lost where no error bar showed it: images behind tilted
+//! openings, flush openings behind two mirrors, dark directions of a sweep, areas listed clockwise.
 
 mod common;
 mod projects;

@@ -114,7 +114,7 @@ pub enum RunError {
 }
 
 fn list(errors: &[PlanError]) -> String {
-    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
 }
 
 /// Runs a project from its plan to the outcome.

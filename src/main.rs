@@ -132,7 +132,8 @@ fn check_one(mut project: Project, check: &Check, interrupted: &AtomicBool) -> u
         Ok(outcome) => outcome,
         Err(error) => {
             bar.finish_and_clear();
-            return complain(&error.to_string());
+            eprintln!("{error}\n\nnothing was computed");
+            return BAD_INPUT;
         }
     };
     bar.finish_and_clear();
@@ -254,7 +255,7 @@ fn explain(project: &Project) -> u8 {
             }
             Err(errors) => {
                 for error in errors {
-                    complain(&error.to_string());
+                    eprintln!("{error}\n");
                 }
                 return BAD_INPUT;
             }

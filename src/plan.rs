@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::grid::{Grid, GridError};
 use crate::outcome::Bound;
-use crate::project::{AreaKind, Project, World};
+use crate::project::{AreaKind, Place, Project, World};
 use crate::quantity::{Quantity, Statistic};
 use crate::query::{Demand, Kernel, Receiver};
 
@@ -131,28 +131,25 @@ pub enum Subject {
 }
 
 /// A mistake that only planning can find.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PlanError {
     /// The grid of an area cannot be laid.
-    #[error("area \"{area}\": {error}")]
     Grid {
         /// Area name.
         area: String,
         /// What is wrong.
         error: GridError,
+        /// Where the area is written, if a user wrote it.
+        place: Option<Place>,
     },
     /// Every point is excluded.
-    #[error(
-        "area \"{area}\": every grid point lies inside furniture or another area; move it or refine its grid"
-    )]
     NoPoints {
         /// Area name.
         area: String,
+        /// Where the area is written, if a user wrote it.
+        place: Option<Place>,
     },
     /// A row that does not exist.
-    #[error(
-        "norm {standard} has no row \"{row}\" (asked for by {by}); `gershun norm show {standard}` lists its rows"
-    )]
     NoRow {
         /// Norm key.
         standard: String,
@@ -161,6 +158,31 @@ pub enum PlanError {
         /// Who asked.
         by: String,
     },
+}
+
+impl std::error::Error for PlanError {}
+
+impl std::fmt::Display for PlanError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (message, hint, place) = match self {
+            Self::Grid { area, error, place } => (format!("area \"{area}\": {error}"), String::new(), place),
+            Self::NoPoints { area, place } => (
+                format!("area \"{area}\": every grid point lies inside furniture or another area"),
+                "move the area, or give it a finer grid".to_owned(),
+                place,
+            ),
+            Self::NoRow { standard, row, by } => (
+                format!("norm {standard} has no row \"{row}\" (asked for by {by})"),
+                format!("`gershun norm show {standard}` lists its rows"),
+                &None,
+            ),
+        };
+        match place {
+            Some(place) => write!(f, "{}", place.mistake(message, hint)),
+            None if hint.is_empty() => write!(f, "error: {message}"),
+            None => write!(f, "error: {message}\n  = hint: {hint}"),
+        }
+    }
 }
 
 /// Plans one world.

@@ -324,11 +324,14 @@ fn bad_arguments_are_refused_before_anything_is_read() {
     assert_eq!(output.status.code(), Some(2), "an existing folder is not overwritten");
 }
 
-/// Catches: a mistake found only by planning that ends in a panic or in a report without the area.
+/// Catches: a mistake found only by planning that ends in a panic or is told without its place.
 #[test]
 fn an_area_wholly_inside_furniture_is_refused() {
     let furniture = "[materials]\nWood = { reflectance = 0.4 }\n[[furniture]]\nat = [0.5, 0.5, 0]\nsize = [2, 2, 1]\nmaterial = \"Wood\"\n";
-    let wrong = complaints(&(GOOD.to_owned() + furniture), &[], "area \"Desk\"", "inside furniture", &[]);
+    let wrong = complaints(&(GOOD.to_owned() + furniture), &[], "project.toml:19:8", "inside furniture", &[]);
+    assert!(wrong.is_empty(), "{wrong}");
+    let border = GOOD.replace("grid = {", "border = 0.6\ngrid = {");
+    let wrong = complaints(&border, &[], "project.toml:19:8", "leaves nothing", &[]);
     assert!(wrong.is_empty(), "{wrong}");
 }
 

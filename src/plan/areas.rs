@@ -35,13 +35,13 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
         let mut grid = match lay(spec, &world.rooms[spec.room], &world.scene) {
             Ok(grid) => grid,
             Err(error) => {
-                errors.push(PlanError::Grid { area: spec.name.clone(), error });
+                errors.push(PlanError::Grid { area: spec.name.clone(), error, place: spec.written.clone() });
                 continue;
             }
         };
         exclude(&mut grid, spec, index, &specs, &world.scene);
         if grid.points.iter().all(|point| point.excluded.is_some()) {
-            errors.push(PlanError::NoPoints { area: spec.name.clone() });
+            errors.push(PlanError::NoPoints { area: spec.name.clone(), place: spec.written.clone() });
             continue;
         }
         let hidden = grid.points.iter().filter(|p| p.excluded == Some(Exclusion::InsideFurniture)).count();
@@ -95,6 +95,7 @@ fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: usize) -> Ve
         rule: GridRule::En,
         border_m,
         quantities: Vec::new(),
+        written: None,
     };
     let narrow = narrowest(&room.footprint);
     let border_m = if narrow > 3.0 * application.border_m.value { application.border_m.value } else { 0.0 };

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use toml::Spanned;
 
 use super::InputFile;
-use super::diagnostics::Diagnostic;
+use super::diagnostics::{Diagnostic, Place};
 use crate::geometry::trace::Simd;
 
 /// Largest photometric, CSV or norm file.
@@ -48,6 +48,11 @@ impl Context {
         if !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// A place of the project file, for mistakes that only a later step can find.
+    pub fn place(&self, span: &Range<usize>) -> Place {
+        Place::new(&self.file, &self.text, span.clone())
     }
 
     /// Reports that something is missing in the table at `span`, unless a key of it was unknown.

@@ -23,6 +23,22 @@ pub struct Diagnostic {
     pub hint: String,
 }
 
+/// A place in a file of the user's, kept for mistakes that only a later step can find.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place(Diagnostic);
+
+impl Place {
+    /// The byte range `span` of `text`, which is the content of `file`.
+    pub fn new(file: &str, text: &str, span: Range<usize>) -> Self {
+        Self(Diagnostic::at(file, text, span, String::new(), String::new()))
+    }
+
+    /// A mistake at this place.
+    pub fn mistake(&self, message: String, hint: String) -> Diagnostic {
+        Diagnostic { message, hint, ..self.0.clone() }
+    }
+}
+
 impl Diagnostic {
     /// A mistake at a byte range of `text`.
     pub fn at(file: &str, text: &str, span: Range<usize>, message: String, hint: String) -> Self {

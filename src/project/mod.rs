@@ -16,7 +16,7 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
-pub use diagnostics::{Diagnostic, suggestion};
+pub use diagnostics::{Diagnostic, Place, suggestion};
 pub use photometric::{ReadError, is_same_file, read_photometry};
 
 use crate::geometry::trace::Simd;
@@ -227,6 +227,8 @@ pub struct AreaSpec {
     pub border_m: f64,
     /// Quantities to report; empty: those of the norm for its kind, else E_h (E_n on surfaces).
     pub quantities: Vec<Quantity>,
+    /// Where the user wrote its name; `None` where a norm made the area from a room.
+    pub written: Option<Place>,
 }
 
 /// Where an area lies.

@@ -61,6 +61,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             rule,
             border_m: section.border.as_ref().map_or(0.0, |border| *border.get_ref()),
             quantities,
+            written: Some(context.place(&section.name.span())),
         });
     }
     for (world, index, of) in surroundings {

@@ -269,13 +269,14 @@ fn method(outcome: &Outcome, lang: Lang) -> String {
     } else {
         let item = |bias: &Bias| {
             let what = bias.what.trim_end_matches('.');
-            format!("{}. {}: {}", escape(what), word(lang, Term::Effect), escape(&bias.effect))
+            let (what, effect) = (words::said(lang, what), words::said(lang, &bias.effect));
+            format!("{}. {}: {}", escape(&what), word(lang, Term::Effect), escape(&effect))
         };
         html.push_str(&list(outcome.biases.iter().map(item)));
     }
     if !outcome.plan.is_empty() {
         html.push_str(&subheading(lang, Term::PlanReasons));
-        html.push_str(&list(outcome.plan.iter().map(|reason| escape(reason))));
+        html.push_str(&list(outcome.plan.iter().map(|reason| escape(&words::said(lang, reason)))));
     }
     if !outcome.inputs.is_empty() {
         html.push_str(&subheading(lang, Term::Inputs));

@@ -15,10 +15,13 @@ const SOURCES: usize = 5;
 pub fn ugr_table(tables: &[UgrTableOutcome], lang: Lang) -> String {
     let text = |value: &Result<f64, Undefined>| match value {
         Ok(value) => number::fixed(lang, *value, 1),
-        Err(undefined) => format!("— <span class=\"note\">{}</span>", escape(&undefined.reason)),
+        Err(undefined) => {
+            format!("— <span class=\"note\">{}</span>", escape(&words::said(lang, &undefined.reason)))
+        }
     };
     let row = |table: &UgrTableOutcome| {
-        let notes = table.notes.iter().map(|note| escape(note)).collect::<Vec<_>>().join("; ");
+        let notes =
+            table.notes.iter().map(|note| escape(&words::said(lang, note))).collect::<Vec<_>>().join("; ");
         vec![
             format!("<b>{}</b>", escape(&table.kind)),
             number::fixed(lang, table.shr, 2),
@@ -44,7 +47,9 @@ pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
         let angle = |degrees| format!("{}°", number::fixed(lang, degrees, 1));
         let ugr = match &view.ugr {
             Ok(ugr) => format!("<b>{}</b>", number::fixed(lang, ugr.value, 1)),
-            Err(undefined) => format!("— <span class=\"note\">{}</span>", escape(&undefined.reason)),
+            Err(undefined) => {
+                format!("— <span class=\"note\">{}</span>", escape(&words::said(lang, &undefined.reason)))
+            }
         };
         let interval = view.ugr.as_ref().map_or("—".to_owned(), |ugr| span(lang, *ugr, 1));
         vec![
@@ -74,7 +79,11 @@ pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
     for convention in conventions {
         put(
             &mut html,
-            format_args!("<p class=\"note\">{}: {}</p>\n", word(lang, Term::Convention), escape(convention)),
+            format_args!(
+                "<p class=\"note\">{}: {}</p>\n",
+                word(lang, Term::Convention),
+                escape(&words::said(lang, convention))
+            ),
         );
     }
     for view in views.iter().filter(|view| !view.sources.is_empty()) {
@@ -123,7 +132,10 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
     if !view.notes.is_empty() {
         put(
             &mut html,
-            format_args!("<div class=\"note\">{}</div>\n", list(view.notes.iter().map(|note| escape(note)))),
+            format_args!(
+                "<div class=\"note\">{}</div>\n",
+                list(view.notes.iter().map(|note| escape(&words::said(lang, note))))
+            ),
         );
     }
     html

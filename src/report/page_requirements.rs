@@ -71,8 +71,8 @@ fn verdict(lang: Lang, r: &Requirement) -> String {
         put(&mut html, format_args!(", {}", word(lang, Term::AtTheLimit)));
     }
     let mut lines: Vec<String> = Vec::new();
-    lines.extend(r.value.as_ref().err().map(|undefined| escape(&undefined.reason)));
-    lines.extend((!r.note.is_empty() && !is_maintained(r)).then(|| escape(words::note(lang, &r.note))));
+    lines.extend(r.value.as_ref().err().map(|undefined| escape(&words::said(lang, &undefined.reason))));
+    lines.extend((!r.note.is_empty() && !is_maintained(r)).then(|| escape(&words::note(lang, &r.note))));
     lines.extend(
         r.other_comparison.map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
     );
@@ -82,7 +82,7 @@ fn verdict(lang: Lang, r: &Requirement) -> String {
         r.at_risk
             .iter()
             .filter(|_| close)
-            .map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(risk))),
+            .map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(&words::said(lang, risk)))),
     );
     for line in lines {
         put(&mut html, format_args!("<br/><span class=\"note\">{line}</span>"));
@@ -107,7 +107,7 @@ pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String
         notes.push(word(lang, Term::AtTheLimitMeans).to_owned());
     }
     if any(&is_maintained) {
-        notes.push(words::note(lang, "maintained").to_owned());
+        notes.push(words::note(lang, "maintained").into_owned());
     }
     let keys: BTreeSet<String> = outcome
         .requirements

@@ -77,7 +77,7 @@ fn requirements(listed: &[&Requirement], naming: Naming, style: Style) -> String
         if let Err(undefined) = &requirement.value
             && !undefined.reason.is_empty()
         {
-            verdict = format!("{verdict}: {undefined}");
+            verdict = format!("{verdict}: {}", words::said(lang, &undefined.reason));
         }
         let cells = [symbol.text(), place, format!("{required}{mark}"), value, interval, verdict]
             .map(|cell| one_line(&cell));

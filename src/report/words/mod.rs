@@ -1,9 +1,13 @@
 //! The words of every report. A word is looked up here and nowhere else, so a language is one
-//! column of [`table::TERMS`]; texts that come from the solver (plan, biases) are not translated.
+//! column of [`table::TERMS`]; sentences of solver and loader are looked up by [`said`].
 
+mod sentences;
 mod table;
 
+pub use sentences::said;
 pub use table::{TERMS, Term};
+
+use std::borrow::Cow;
 
 use crate::outcome::Verdict;
 use crate::project::AreaKind;
@@ -225,12 +229,12 @@ pub fn stopped(lang: Lang, reason: &str) -> &str {
 }
 
 /// A remark on how a value came about, as far as it is one of ours.
-pub fn note(lang: Lang, note: &str) -> &str {
+pub fn note(lang: Lang, note: &str) -> Cow<'_, str> {
     match note {
-        "maintained" => word(lang, Term::MaintainedValue),
-        "declared, not computed" => word(lang, Term::DeclaredNotComputed),
-        "not computed" => word(lang, Term::NotComputed),
-        _ => note,
+        "maintained" => word(lang, Term::MaintainedValue).into(),
+        "declared, not computed" => word(lang, Term::DeclaredNotComputed).into(),
+        "not computed" => word(lang, Term::NotComputed).into(),
+        _ => said(lang, note),
     }
 }
 
@@ -286,7 +290,7 @@ mod tests {
             "not computed",
         ] {
             assert!(source.contains(&format!("\"{text}\"")), "nobody says \"{text}\"");
-            assert_ne!(stopped(Lang::Ru, note(Lang::Ru, text)), text, "not translated");
+            assert_ne!(stopped(Lang::Ru, &note(Lang::Ru, text)), text, "not translated");
         }
     }
 

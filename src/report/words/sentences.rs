@@ -1,0 +1,309 @@
+//! Sentences that the solver and the loader say – reasons, biases, notes – in other languages. They
+//! are English inside the program and in files for machines; what people read is looked up here by
+//! its pattern, `{}` standing for names and numbers. A sentence that is not in the table stays English:
+//! `untranslated` tells, and a test runs it over the bundled scenes.
+
+use std::borrow::Cow;
+
+use super::Lang;
+
+/// Patterns in English and Russian, more special ones first where two could match.
+pub const SENTENCES: &[(&str, &str)] = &[
+    // Reasons of the plan.
+    (
+        "{} receivers and {} lines of sight ask for a stored field: light is solved once, then looked up.",
+        "Расчётных точек: {}, лучей зрения: {}; поле яркости рассчитывается один раз и хранится, ответы берутся из него.",
+    ),
+    (
+        "Every surface stores one number a side: all scattering materials are diffuse, so their luminance has no direction.",
+        "Для каждой стороны поверхности хранится одно число: все рассеивающие материалы диффузные, их яркость не зависит от направления.",
+    ),
+    (
+        "{} specular surfaces store nothing: rays are followed through them, and luminaires are imaged in their planes.",
+        "Для зеркальных и прозрачных поверхностей ({}) ничего не хранится: лучи прослеживаются через них, светильники отражаются в их плоскостях.",
+    ),
+    (
+        "No surface is specular: rays end at the first surface.",
+        "Зеркальных поверхностей нет: луч заканчивается на первой поверхности.",
+    ),
+    (
+        "{} channels are solved at once; {} light scenes and the maintenance factors are weights on them.",
+        "Каналов, рассчитываемых вместе: {}; световые сцены ({}) и коэффициенты эксплуатации – их весовые множители.",
+    ),
+    (
+        "Room \"{}\" lists no areas: {} were made from its outline (working plane, walls, ceiling, volume).",
+        "Для помещения «{}» области не заданы: по его контуру построены {} (рабочая плоскость, стены, потолок, объём).",
+    ),
+    (
+        "Area \"{}\": {} of {} points lie inside furniture and are left out.",
+        "Область «{}»: {} из {} точек лежат внутри мебели и исключены.",
+    ),
+    // Biases of solving.
+    (
+        "Unshadowed light of openings is integrated numerically.",
+        "Свет выходных отверстий без учёта затенения интегрируется численно.",
+    ),
+    ("at most about {} of each luminaire's illuminance", "не более {} освещённости от каждого светильника"),
+    (
+        "Light of point sources that reaches diffuse surfaces only by two or more specular reflections, or by curved mirrors, is left out.",
+        "Не учтён свет точечных источников, попадающий на диффузные поверхности лишь после двух и более зеркальных отражений или через кривые зеркала.",
+    ),
+    ("{} % of the luminous flux (measured)", "{} % светового потока (измерено)"),
+    (
+        "Specular images of bright surfaces other than luminaires are part of the background, not glare sources.",
+        "Зеркальные отражения ярких поверхностей, кроме светильников, отнесены к фону, а не к блёским источникам.",
+    ),
+    (
+        "{} specular planes; images of luminaires by one reflection in them do count as glare sources",
+        "зеркальных плоскостей: {}; однократные отражения светильников в них учтены как блёские источники",
+    ),
+    (
+        "Opal surfaces lit from behind are part of the background, not glare sources.",
+        "Просвечиваемые опаловые поверхности отнесены к фону, а не к блёским источникам.",
+    ),
+    (
+        "observers' UGR reads low where one is bright",
+        "UGR наблюдателей занижен, если такая поверхность яркая",
+    ),
+    ("Luminous surfaces shine on both sides.", "Светящиеся поверхности излучают в обе стороны."),
+    (
+        "light of a side that faces out of the room counts as emitted and escaped in the flux balance",
+        "свет стороны, обращённой наружу, входит в баланс потоков как излучённый и вышедший",
+    ),
+    ("Walks in a cavity without absorption were cut.", "Блуждания в полости без поглощения были оборваны."),
+    ("{} walks", "блужданий: {}"),
+    (
+        "Some rays left the scene: it is open, or its surfaces do not meet.",
+        "Часть лучей вышла из сцены: она открыта или её поверхности не смыкаются.",
+    ),
+    ("{} % of all rays; see the escaped flux", "{} % всех лучей; см. вышедший поток"),
+    ("not quantified", "не оценено количественно"),
+    ("{}: up to {} % of the value; the margin is {} %", "{}: до {} % значения; запас {} %"),
+    ("{}: {}; the margin is {} %", "{}: {}; запас {} %"),
+    // Biases of loading.
+    ("cameras are not rendered by check", "камеры командой check не рассчитываются"),
+    ("glare maps are not computed by check", "карты блёскости командой check не рассчитываются"),
+    (
+        "{}: light sources of the glTF file are ignored; luminaires come from the project",
+        "{}: источники света файла glTF не используются; светильники задаются в проекте",
+    ),
+    ("{}: morph targets of the glTF file are ignored", "{}: морфинг-цели файла glTF не используются"),
+    (
+        "{}: the file names no default scene; its first one was read",
+        "{}: в файле не названа сцена по умолчанию; прочитана первая",
+    ),
+    ("nothing emits light in {}", "в сцене {} ничто не излучает свет"),
+    (
+        "room \"{}\": the geometry is flat, {} m × {} m × {} m",
+        "помещение «{}»: геометрия плоская, {} м × {} м × {} м",
+    ),
+    (
+        "room \"{}\": faces of the shell look outwards; both sides reflect alike",
+        "помещение «{}»: грани оболочки обращены наружу; обе стороны отражают одинаково",
+    ),
+    // Notes on glare.
+    (
+        "visible part, mean luminance; position index CIE 117 table (Iwata–Osterhaus below the line of sight); L_b = E_ind/π",
+        "видимая часть, средняя яркость; индекс позиции по таблице CIE 117 (ниже линии зрения – Ивата–Остерхаус); L_b = E_отр/π",
+    ),
+    (
+        "a source lies below the line of sight: Iwata–Osterhaus position index",
+        "источник ниже линии зрения: индекс позиции по Ивата–Остерхаусу",
+    ),
+    ("{} source(s) {}", "источников: {} – {}"),
+    (
+        "seen under less than {} sr, where UGR is not validated",
+        "видны под телесным углом менее {} ср, где UGR не проверен",
+    ),
+    (
+        "seen under more than {} sr, where UGR is not validated",
+        "видны под телесным углом более {} ср, где UGR не проверен",
+    ),
+    (
+        "with more than {} m² of projected area, which UGR understates",
+        "с площадью проекции более {} м², которые UGR недооценивает",
+    ),
+    ("no light source is visible", "источники света не видны"),
+    ("the background luminance is not positive", "яркость фона не положительна"),
+    ("a source has no finite luminance", "у источника нет конечной яркости"),
+    ("a source has no valid position index", "у источника нет допустимого индекса позиции"),
+    ("the viewpoint has no direction", "у точки наблюдения нет направления взгляда"),
+    // The table method.
+    ("the room has no luminaire", "в помещении нет светильников"),
+    ("not computed", "не рассчитано"),
+    (
+        "table method not applicable: luminaires are not aimed straight down",
+        "табличный метод неприменим: светильники направлены не вертикально вниз",
+    ),
+    (
+        "table method not applicable: luminaires hang at different heights or below the eye",
+        "табличный метод неприменим: светильники висят на разной высоте или ниже глаз",
+    ),
+    (
+        "table method not applicable: the luminaire has no luminous area",
+        "табличный метод неприменим: у светильника не задана светящая площадь",
+    ),
+    (
+        "table method not applicable: the room is not rectangular",
+        "табличный метод неприменим: помещение не прямоугольное",
+    ),
+    ("the UGR table method does not apply: {}", "табличный метод UGR неприменим: {}"),
+    ("table not applicable: asymmetric luminaire", "таблица неприменима: светильник несимметричный"),
+    (
+        "luminaires are turned: the worse of both directions of the room is taken",
+        "светильники повёрнуты: взято худшее из двух направлений помещения",
+    ),
+    ("reflectances {} taken for {}", "коэффициенты отражения {} приняты вместо {}"),
+    (
+        "room {} H × {} H lies outside the table, nearest rooms taken",
+        "помещение {} H × {} H вне таблицы, взяты ближайшие",
+    ),
+    (
+        "table method CIE 190, SHR {}, worst direction, initial flux",
+        "табличный метод CIE 190, SHR {}, худшее направление, начальный поток",
+    ),
+    // Undefined values.
+    ("E_max is 0", "E_max равна 0"),
+    ("no light arrives on the area: 0/0", "на область не падает свет: 0/0"),
+    ("the area has no point", "в области нет точек"),
+    (
+        "an area has no single value: ask for its mean, min, max, U0 or Ud",
+        "у области нет одного значения: запросите mean, min, max, U0 или Ud",
+    ),
+    (
+        "not declared for every luminaire type ([declared] ra)",
+        "заявлено не для каждого типа светильников ([declared] ra)",
+    ),
+    ("the norm's row has no limit", "строка нормы не содержит предела"),
+    ("the quantity is undefined where no light arrives", "величина не определена там, куда не падает свет"),
+    ("this quantity is not measured on an area", "эта величина на области не измеряется"),
+    (
+        "a room has no grid of its own: name one of its areas",
+        "у помещения нет собственной сетки: назовите одну из его областей",
+    ),
+];
+
+/// A sentence in the reader's language; English where no pattern matches.
+pub fn said(lang: Lang, text: &str) -> Cow<'_, str> {
+    match lang {
+        Lang::En => Cow::Borrowed(text),
+        Lang::Ru => russian(text).map_or(Cow::Borrowed(text), Cow::Owned),
+    }
+}
+
+fn russian(text: &str) -> Option<String> {
+    SENTENCES.iter().find_map(|(english, russian)| {
+        // A closing full stop belongs to the place where the sentence is printed.
+        let stopped = english.strip_suffix('.').filter(|_| !text.ends_with('.'));
+        let parts = captured(stopped.unwrap_or(english), text)?;
+        let target = if stopped.is_some() { russian.trim_end_matches('.') } else { russian };
+        let mut pieces = target.split("{}");
+        let mut whole = pieces.next().unwrap_or_default().to_owned();
+        for (part, piece) in parts.iter().zip(pieces) {
+            whole.push_str(&part_in_russian(part));
+            whole.push_str(piece);
+        }
+        Some(whole)
+    })
+}
+
+/// Numbers get a decimal comma; a part that is itself a sentence is looked up.
+fn part_in_russian(part: &str) -> String {
+    if part.parse::<f64>().is_ok() {
+        return part.replace('.', ",");
+    }
+    russian(part).unwrap_or_else(|| part.to_owned())
+}
+
+/// What stands at each `{}` of the pattern; `None` if the text does not follow it.
+fn captured<'t>(pattern: &str, text: &'t str) -> Option<Vec<&'t str>> {
+    let mut pieces = pattern.split("{}");
+    let mut rest = text.strip_prefix(pieces.next()?)?;
+    let mut parts = Vec::new();
+    let mut pieces = pieces.peekable();
+    while let Some(piece) = pieces.next() {
+        let at = match (piece.is_empty(), pieces.peek()) {
+            (true, None) => rest.len(),
+            (_, None) => rest.len().checked_sub(piece.len()).filter(|&at| rest.is_char_boundary(at))?,
+            (_, Some(_)) => rest.find(piece)?,
+        };
+        if &rest[at..] != piece && pieces.peek().is_none() && !piece.is_empty() {
+            return None;
+        }
+        parts.push(&rest[..at]);
+        rest = &rest[(at + piece.len()).min(rest.len())..];
+    }
+    rest.is_empty().then_some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_numbers_are_carried_over() {
+        let text = "Area \"Стол 1\": 3 of 12 points lie inside furniture and are left out.";
+        assert_eq!(said(Lang::Ru, text), "Область «Стол 1»: 3 из 12 точек лежат внутри мебели и исключены.");
+        assert_eq!(said(Lang::En, text), text);
+        assert_eq!(
+            said(Lang::Ru, "0.0123 % of all rays; see the escaped flux"),
+            "0,0123 % всех лучей; см. вышедший поток"
+        );
+        assert_eq!(said(Lang::Ru, "nobody says this"), "nobody says this");
+        // A sentence within a sentence, its full stop cut.
+        assert_eq!(
+            said(
+                Lang::Ru,
+                "Luminous surfaces shine on both sides: up to 0.50 % of the value; the margin is 1.2 %"
+            ),
+            "Светящиеся поверхности излучают в обе стороны: до 0,50 % значения; запас 1,2 %"
+        );
+    }
+
+    /// Catches: a number that changes places or gets lost between the languages.
+    #[test]
+    fn both_languages_have_the_same_parts() {
+        for (english, russian) in SENTENCES {
+            assert_eq!(english.matches("{}").count(), russian.matches("{}").count(), "{english}");
+            assert_ne!(english, russian);
+            let mut filled = english.to_string();
+            for number in 1..=english.matches("{}").count() {
+                filled = filled.replacen("{}", &(1000 + number).to_string(), 1);
+            }
+            let translated = said(Lang::Ru, &filled);
+            let mut from = 0;
+            for number in 1..=english.matches("{}").count() {
+                let at = translated[from..].find(&(1000 + number).to_string());
+                assert!(at.is_some(), "{english} → {translated}");
+                from += at.unwrap_or(0);
+            }
+        }
+    }
+
+    /// Catches: a sentence reworded in the program whose translation is then never found.
+    #[test]
+    fn every_pattern_is_said_somewhere() {
+        let mut source = String::new();
+        let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).expect("src is there").flatten() {
+                if entry.path().is_dir() {
+                    folders.push(entry.path());
+                } else if !entry.path().ends_with("sentences.rs") {
+                    source.push_str(&std::fs::read_to_string(entry.path()).expect("text"));
+                }
+            }
+        }
+        // String literals may be broken over lines or escaped.
+        let source: String =
+            source.replace("\\\"", "\"").split_whitespace().collect::<Vec<_>>().join(" ").replace("\\ ", "");
+        let mut unsaid = Vec::new();
+        for (english, _) in SENTENCES {
+            let longest = english.split("{}").max_by_key(|piece| piece.len()).unwrap_or_default();
+            if !source.contains(longest.trim_matches([' ', ':', ';', '.'])) {
+                unsaid.push(longest);
+            }
+        }
+        assert!(unsaid.is_empty(), "nobody says {unsaid:#?}");
+    }
+}

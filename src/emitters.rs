@@ -2,8 +2,9 @@
 //! that is visible, its luminance and solid angle. Solvers and glare use the same functions, so
 //! what lights a desk and what dazzles an eye cannot differ.
 //!
-//! Light leaves every point of an opening alike: dE = I(C,γ)/A · R(ω) / d² dA, so illuminance never
-//! divides by a projected area. A luminaire is also seen as its image in a planar mirror or pane.
+//! Light leaves every point of a flat opening alike: dE = I(C,γ)/A · R(ω) / d² dA, so its illuminance
+//! never divides by a projected area; bodies are weighted by what is seen of them, see
+//! [`crate::photometry::Opening`]. A luminaire is also seen as its image in a planar mirror or pane.
 
 mod direct;
 mod images;
@@ -13,7 +14,7 @@ use glam::{DMat3, DVec3};
 
 use crate::geometry::trace::Tracer;
 use crate::luminaire::Luminaire;
-use crate::photometry::Opening;
+use crate::photometry::{Opening, Shine};
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, unshadowed};
@@ -46,9 +47,9 @@ pub struct Source {
     pub position: DVec3,
     /// Axes of the luminaire frame (mirrored for an image).
     world_from_luminaire: DMat3,
-    /// Plane area of the opening, m²; 0 for a point.
+    /// Area of the opening as seen from γ = 0, m².
     pub area_m2: f64,
-    /// Half the opening's largest extent, m.
+    /// Radius of a ball that holds the opening, m; 0 for a point.
     pub radius_m: f64,
     opening: Opening,
     dim: f64,
@@ -61,8 +62,16 @@ pub struct Arrival {
     pub direction: DVec3,
     /// Distance, m.
     pub distance_m: f64,
-    /// I(C,γ)/d² in lx on a surface that faces the source, panes and mirrors not yet taken off.
+    /// I(C,γ)/d² in lx on a surface that faces the source, panes and mirrors not yet taken off; the
+    /// weight of the point ([`Shine`]) is in it.
     pub normal_lx: f64,
+}
+
+impl Source {
+    /// All light leaves from one point.
+    pub fn is_point(&self) -> bool {
+        !(self.radius_m > 0.0)
+    }
 }
 
 impl<'s> Emitters<'s> {
@@ -80,7 +89,10 @@ impl<'s> Emitters<'s> {
                 position: luminaire.position,
                 world_from_luminaire: luminaire.world_from_luminaire,
                 area_m2: luminaire.kind.opening.area_m2(),
-                radius_m: luminaire.kind.opening.outline().iter().map(|p| p.length()).fold(0.0, f64::max),
+                radius_m: match luminaire.kind.opening.is_point() {
+                    true => 0.0,
+                    false => luminaire.kind.opening.radius_m(),
+                },
                 opening: luminaire.kind.opening,
                 dim: luminaire.dim,
             })
@@ -138,7 +150,24 @@ impl<'s> Emitters<'s> {
         u: [f64; 2],
         wanted: impl FnOnce(DVec3) -> bool,
     ) -> Option<Arrival> {
-        let from = source.position + source.world_from_luminaire * source.opening.point(u);
+        let shine = source.opening.shine(self.place(source, point), u)?;
+        self.arrival_from(source, point, shine, wanted)
+    }
+
+    /// A point in the luminaire frame of a source.
+    fn place(&self, source: &Source, point: DVec3) -> DVec3 {
+        source.world_from_luminaire.transpose() * (point - source.position)
+    }
+
+    #[inline]
+    fn arrival_from(
+        &self,
+        source: &Source,
+        point: DVec3,
+        shine: Shine,
+        wanted: impl FnOnce(DVec3) -> bool,
+    ) -> Option<Arrival> {
+        let from = source.position + source.world_from_luminaire * shine.at;
         let towards = from - point;
         let distance_squared = towards.length_squared();
         // A receiver that touches the opening has no finite point illuminance; it gets none.
@@ -159,7 +188,7 @@ impl<'s> Emitters<'s> {
         (intensity_cd > 0.0).then(|| Arrival {
             direction,
             distance_m,
-            normal_lx: intensity_cd / distance_squared,
+            normal_lx: shine.weight * intensity_cd / distance_squared,
         })
     }
 
@@ -208,22 +237,13 @@ impl<'s> Emitters<'s> {
     /// Luminance in cd/m² with which transport sees the opening of `luminaire` along `direction`
     /// (unit, from the eye), and the distance to it; `None` if the ray misses it or it is a point.
     ///
-    /// L = I(C,γ)/(A |cos γ|): the same light that [`Emitters::arrival`] integrates.
+    /// L = I(C,γ)/A_p(C,γ): the same light that [`Emitters::arrival`] integrates.
     pub fn opening_along(&self, luminaire: usize, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
         let entry = &self.scene.luminaires[luminaire];
-        let kind = &entry.kind;
-        let area_m2 = kind.opening.area_m2();
         let into = entry.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - entry.position), into * direction);
-        let t = -o.z / d.z;
-        if !(area_m2 > 0.0 && t > 0.0 && t.is_finite()) {
-            return None;
-        }
-        let at = o + d * t;
-        if !kind.opening.contains(at) {
-            return None;
-        }
-        let intensity_cd = kind.distribution.intensity_along(-d) * entry.dim;
-        Some((intensity_cd / (area_m2 * d.z.abs()), t))
+        let (distance_m, projected_m2) = entry.kind.opening.along(o, d)?;
+        let intensity_cd = entry.kind.distribution.intensity_along(-d) * entry.dim;
+        Some((intensity_cd / projected_m2, distance_m))
     }
 }

@@ -30,7 +30,7 @@ pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
         let arrival = emitters.arrival(source, point, u);
         arrival.normal_lx * kernel.response(arrival.direction)
     };
-    if !(source.area_m2 > 0.0) {
+    if source.is_point() {
         return value([0.5, 0.5]);
     }
     let luminaire = emitters.luminaire(source);
@@ -47,13 +47,27 @@ pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
             corners.iter().map(|&p| source.position + source.world_from_luminaire * p - point).collect();
         return luminance * contour(&corners, *normal);
     }
-    if let Kernel::Planar { normal } = kernel
-        && normal.dot(source.position - point).abs() < source.radius_m
-    {
+    let cut = matches!(kernel, Kernel::Planar { normal }
+        if normal.dot(source.position - point).abs() < source.radius_m);
+    let near = u32::from(source.position.distance(point) < NEAR * source.radius_m);
+    let pieces = luminaire.kind.opening.pieces();
+    if pieces > 0 {
+        // Piece by piece, since a rule across an edge would see a jump.
+        let place = emitters.place(source, point);
+        let least = if cut { 4 } else { near };
+        let shone = |piece: usize| {
+            integral(least, &|u| {
+                let shine = source.opening.shine_of_piece(piece, place, u);
+                let arrival = shine.and_then(|shine| emitters.arrival_from(source, point, shine, |_| true));
+                arrival.map_or(0.0, |arrival| arrival.normal_lx * kernel.response(arrival.direction))
+            })
+        };
+        return (0..pieces).map(shone).sum();
+    }
+    if let (true, Kernel::Planar { normal }) = (cut, kernel) {
         return across_horizon(emitters, source, point, *normal, &value);
     }
-    let least = u32::from(source.position.distance(point) < NEAR * source.radius_m);
-    integral(least, &value)
+    integral(near, &value)
 }
 
 /// ∫ over the unit square, split at least `least` times.
@@ -63,8 +77,8 @@ fn integral(least: u32, value: &impl Fn([f64; 2]) -> f64) -> f64 {
 }
 
 /// The receiver's plane cuts the opening: only the part above it counts, and a rule that straddles
-/// the cut would miss how much. A rectangle is clipped in its own coordinates and the rest integrated
-/// triangle by triangle; other openings are split finely.
+/// the cut would miss how much. A flat rectangle is clipped in its own coordinates and the rest
+/// integrated triangle by triangle; round ones are split finely.
 fn across_horizon(
     emitters: &Emitters,
     source: &Source,
@@ -73,11 +87,11 @@ fn across_horizon(
     value: &impl Fn([f64; 2]) -> f64,
 ) -> f64 {
     let opening = emitters.luminaire(source).kind.opening;
-    if !matches!(opening, Opening::Rect { .. }) {
+    if !matches!(opening, Opening::Rect { .. } | Opening::Upright { round: false, .. }) {
         return integral(4, value);
     }
     let height = |[u, v]: [f64; 2]| {
-        normal.dot(source.position + source.world_from_luminaire * opening.point([u, v]) - point)
+        normal.dot(source.position + source.world_from_luminaire * opening.plane_point([u, v]) - point)
     };
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mut kept: Vec<[f64; 2]> = Vec::with_capacity(5);

@@ -120,7 +120,7 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
     }
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
     // Point sources have no opening to be hit: for them every plane counts.
-    let has_points = scene.luminaires.iter().any(|luminaire| !(luminaire.kind.opening.area_m2() > 0.0));
+    let has_points = scene.luminaires.iter().any(|luminaire| luminaire.kind.opening.is_point());
     let total_m2: f64 = mesh.surface_areas_m2().iter().sum();
     found.retain(|(_, area_m2)| has_points || *area_m2 >= LEAST_SHARE * total_m2);
     found.truncate(MOST_PLANES);

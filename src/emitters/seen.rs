@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Emitters, Source};
+use super::Emitters;
 use crate::estimate::Estimate;
 use crate::rng::{Rng, Stratified};
 
@@ -20,7 +20,7 @@ pub struct Seen {
     pub direction: DVec3,
     /// Distance to the centre, m.
     pub distance_m: f64,
-    /// Solid angle of the visible part, ∫ A_p/A · V/d² dA, sr; 0 for point sources.
+    /// Solid angle of the visible part, ∫ V dω over the opening, sr; 0 for point sources.
     pub solid_angle_sr: Estimate,
     /// ∫ L dω over the visible part, lx on a plane facing the source: I/d² of what is visible.
     pub normal_lx: Estimate,
@@ -48,25 +48,25 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
     if !emitters.may_show(source, eye) {
         return None;
     }
-    let centre = emitters.arrival(source, eye, [0.5, 0.5]);
+    let centre = source.position - eye;
     let mut rng = Rng::new(seed, u64::MAX, index as u64);
     let mut solid = Vec::with_capacity(REPLICATES);
     let mut light = Vec::with_capacity(REPLICATES);
     let mut whole = 0.0;
     let mut passed_sum = 0.0;
-    let points = if source.area_m2 > 0.0 { POINTS } else { 1 };
+    let points = if source.is_point() { 1 } else { POINTS };
+    let place = emitters.place(source, eye);
     for _ in 0..REPLICATES {
         let sequence = Stratified::new(&mut rng);
         let (mut solid_sr, mut normal_lx) = (0.0, 0.0);
         for point in 0..points {
             let u = if points == 1 { [0.5, 0.5] } else { sequence.point(point, &mut rng) };
-            let arrival = emitters.arrival(source, eye, u);
-            let element_sr = projected_area(emitters, source, arrival.direction)
-                / (arrival.distance_m * arrival.distance_m);
+            let Some(shine) = source.opening.shine(place, u) else { continue };
+            let away = place - shine.at;
+            let projected_m2 = source.opening.projected_area_m2(away.normalize_or_zero());
+            let element_sr = shine.weight * projected_m2 / away.length_squared();
             whole += element_sr;
-            if !(arrival.normal_lx > 0.0) {
-                continue;
-            }
+            let Some(arrival) = emitters.arrival_from(source, eye, shine, |_| true) else { continue };
             let passed = emitters.passed(source, eye, &arrival);
             passed_sum += passed;
             // Behind a pane or in a mirror the source keeps its solid angle and loses luminance.
@@ -83,17 +83,11 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
     let whole_sr = whole / (REPLICATES as f64 * f64::from(points));
     Some(Seen {
         source: index,
-        direction: centre.direction,
-        distance_m: centre.distance_m,
+        direction: centre.normalize_or_zero(),
+        distance_m: centre.length(),
         visible_fraction: if whole_sr > 0.0 { solid_angle_sr.value / whole_sr } else { 1.0 },
         solid_angle_sr,
         normal_lx: Estimate::from_blocks(&light),
-        projected_area_m2: projected_area(emitters, source, centre.direction),
+        projected_area_m2: source.opening.projected_area_m2(place.normalize_or_zero()),
     })
-}
-
-/// Projected area in m² towards the eye that looks along `direction`.
-fn projected_area(emitters: &Emitters, source: &Source, direction: DVec3) -> f64 {
-    let leaving = source.world_from_luminaire.transpose() * -direction;
-    emitters.luminaire(source).kind.opening.projected_area_m2(leaving)
 }

@@ -138,24 +138,17 @@ fn dropped(before: &Photometry, after: &Photometry, target: Target) -> Vec<Strin
 }
 
 fn same_opening(a: Opening, b: Opening) -> bool {
-    let sizes = |opening: Opening| match opening {
-        Opening::Point => [0.0; 5],
-        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
-            [1.0, length_m, width_m, side_x_m, side_y_m]
-        }
-        Opening::Disc { diameter_m, height_m } => [2.0, diameter_m, height_m, 0.0, 0.0],
-    };
-    sizes(a).iter().zip(sizes(b)).all(|(a, b)| (a - b).abs() < 1e-6)
+    let ((name_a, a), (name_b, b)) = (a.sizes(), b.sizes());
+    name_a == name_b && a.iter().zip(&b).all(|((_, a), (_, b))| (a - b).abs() < 1e-6)
 }
 
 fn shown(opening: Opening) -> String {
-    match opening {
-        Opening::Point => "a point".to_owned(),
-        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
-            format!("{length_m:.3} × {width_m:.3} m with sides of {side_x_m:.3} and {side_y_m:.3} m")
-        }
-        Opening::Disc { diameter_m, height_m } => format!("⌀ {diameter_m:.3} × {height_m:.3} m"),
-    }
+    let (name, sizes) = opening.sizes();
+    let sizes: Vec<String> = sizes
+        .iter()
+        .map(|(what, m)| format!("{} {m:.3} m", what.trim_end_matches("_m").replace('_', " ")))
+        .collect();
+    [name.to_owned(), sizes.join(", ")].join(" ").trim_end().to_owned()
 }
 
 #[cfg(test)]

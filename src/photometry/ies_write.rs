@@ -42,16 +42,27 @@ pub fn to_ies(photometry: &Photometry) -> Vec<u8> {
     (lines.join("\r\n") + "\r\n").into_bytes()
 }
 
-/// Width, length, height; diameters are negative. Sides of two heights become their mean.
+/// Width, length, height by the codes of 2002; diameters are negative. Sides of several heights become
+/// their mean.
 fn sizes_m(opening: Opening) -> [f64; 3] {
     match opening {
         Opening::Point => [0.0; 3],
         Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
-            let upright = !(length_m > 0.0 && width_m > 0.0);
-            let height_m = if upright { side_x_m.max(side_y_m) } else { 0.5 * (side_x_m + side_y_m) };
-            [width_m, length_m, height_m]
+            [width_m, length_m, 0.5 * (side_x_m + side_y_m)]
+        }
+        Opening::Sided { length_m, width_m, sides_m } => {
+            [width_m, length_m, 0.25 * sides_m.iter().sum::<f64>()]
         }
         Opening::Disc { diameter_m, height_m } => [-diameter_m, -diameter_m, height_m],
+        Opening::Ellipse { length_m, width_m, height_m } => [-width_m, -length_m, height_m],
+        Opening::Ellipsoid { length_m, width_m, height_m } => [-width_m, -length_m, -height_m],
+        Opening::Tube { length_m, width_m, height_m, across: false } => [-width_m, length_m, -height_m],
+        Opening::Tube { length_m, width_m, height_m, across: true } => [length_m, -width_m, -height_m],
+        Opening::Upright { width_m, height_m, across, round } => {
+            let sign = if round { -1.0 } else { 1.0 };
+            let [width, length] = if across { [0.0, sign * width_m] } else { [sign * width_m, 0.0] };
+            [width, length, sign * height_m]
+        }
     }
 }
 

@@ -265,7 +265,7 @@ pub(super) mod tests {
     #[test]
     fn sizes_and_lamps() {
         let lamp = read_lines(&lines(0)).expect("sound");
-        let rect = Opening::Rect { length_m: 1.2, width_m: 0.2, side_x_m: 0.03, side_y_m: 0.02 };
+        let rect = Opening::Sided { length_m: 1.2, width_m: 0.2, sides_m: [0.02, 0.03, 0.04, 0.01] };
         assert_eq!(format!("{:.6?}", lamp.opening), format!("{rect:.6?}"));
         assert_eq!(
             (lamp.lamp_flux_lm, lamp.rated_flux_lm, lamp.power_w),

@@ -62,7 +62,7 @@ impl Head<'_> {
         0.0
     }
 
-    /// Length lies along C90–C270 (frame x), so the sides seen from C90 and C270 face ±x.
+    /// Length lies along C90–C270 (frame x): the sides seen from C90, C180, C270 and C0 face +x, +y, −x, −y.
     pub(super) fn opening(&mut self) -> Opening {
         let [length_m, width_m] = [16, 17].map(|line| self.size_m(line));
         let [c0, c90, c180, c270] = [18, 19, 20, 21].map(|line| self.size_m(line));
@@ -71,12 +71,7 @@ impl Head<'_> {
         }
         self.check_housing(length_m, width_m);
         if width_m > 0.0 {
-            return Opening::Rect {
-                length_m,
-                width_m,
-                side_x_m: 0.5 * (c90 + c270),
-                side_y_m: 0.5 * (c0 + c180),
-            };
+            return Opening::sided(length_m, width_m, [c90, c180, c270, c0]);
         }
         Opening::Disc { diameter_m: length_m, height_m: 0.25 * (c0 + c90 + c180 + c270) }
     }

@@ -21,7 +21,7 @@ pub fn to_ldt(photometry: &Photometry) -> Vec<u8> {
         Symmetry::AboutLength => (3, planes.between(270.0, 450.0)),
         Symmetry::Quadrant => (4, planes.between(0.0, 90.0)),
     };
-    let [length, width, side_c0, side_c90] = sizes_m(photometry.opening).map(|size| number(1000.0 * size));
+    let [length, width, c0, c90, c180, c270] = sizes_m(photometry.opening).map(|size| number(1000.0 * size));
     let name = ascii(&photometry.description, NAME);
     let kind = if planes.symmetry == Symmetry::Rotational { 1 } else { 3 };
     let set_count = if photometry.lamp_flux_lm.is_some() { 1 } else { -1 };
@@ -46,10 +46,10 @@ pub fn to_ldt(photometry: &Photometry) -> Vec<u8> {
         "0".into(),
         length,
         width,
-        side_c0.clone(),
-        side_c90.clone(),
-        side_c0,
-        side_c90,
+        c0,
+        c90,
+        c180,
+        c270,
         number(100.0 * down),
         number(100.0 * lor),
         "1".into(),
@@ -71,13 +71,39 @@ pub fn to_ldt(photometry: &Photometry) -> Vec<u8> {
     (lines.join("\r\n") + "\r\n").into_bytes()
 }
 
-/// Length, width (0 for a disc), luminous height towards C0 and towards C90.
-fn sizes_m(opening: Opening) -> [f64; 4] {
+/// Length, width (0 for a disc), luminous heights towards C0, C90, C180, C270 (frame −y, +x, +y, −x).
+/// Shapes that the format does not know become the box or cylinder that shows as much from below and
+/// from the sides.
+fn sizes_m(opening: Opening) -> [f64; 6] {
     match opening {
-        Opening::Point => [0.0; 4],
-        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => [length_m, width_m, side_y_m, side_x_m],
-        Opening::Disc { diameter_m, height_m } => [diameter_m, 0.0, height_m, height_m],
+        Opening::Point => [0.0; 6],
+        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
+            [length_m, width_m, side_y_m, side_x_m, side_y_m, side_x_m]
+        }
+        Opening::Sided { length_m, width_m, sides_m: [east, north, west, south] } => {
+            [length_m, width_m, south, east, north, west]
+        }
+        Opening::Disc { diameter_m, height_m } => [diameter_m, 0.0, height_m, height_m, height_m, height_m],
+        Opening::Ellipse { length_m, width_m, height_m } => {
+            box_like([length_m, width_m], opening.area_m2(), [width_m * height_m, length_m * height_m])
+        }
+        Opening::Ellipsoid { length_m, width_m, .. }
+        | Opening::Tube { length_m, width_m, across: false, .. }
+        | Opening::Tube { length_m: width_m, width_m: length_m, across: true, .. } => {
+            let sides = [glam::DVec3::X, glam::DVec3::Y].map(|from| opening.projected_area_m2(from));
+            box_like([length_m, width_m], opening.area_m2(), sides)
+        }
+        // No place for an upright plane; a thin box would be given a front that the plane has not.
+        Opening::Upright { .. } => [0.0; 6],
     }
+}
+
+/// A box of these proportions on plan, with the areas that are seen from below and along x and y.
+fn box_like([length_m, width_m]: [f64; 2], below_m2: f64, [along_x_m2, along_y_m2]: [f64; 2]) -> [f64; 6] {
+    let shrink = (below_m2 / (length_m * width_m)).sqrt();
+    let (length_m, width_m) = (shrink * length_m, shrink * width_m);
+    let (side_x_m, side_y_m) = (along_x_m2 / width_m, along_y_m2 / length_m);
+    [length_m, width_m, side_y_m, side_x_m, side_y_m, side_x_m]
 }
 
 /// The step of evenly spaced angles, else 0.

@@ -5,8 +5,10 @@
 // `!(x > 0.0)` is meant: such a guard stops NaN too.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+mod body;
 mod distribution;
 mod emission;
+mod face;
 mod findings;
 mod gldf;
 mod ies;
@@ -29,7 +31,7 @@ pub use distribution::{DistributionError, IntensityDistribution};
 pub use ies::Lm63Version;
 pub use ies_write::to_ies;
 pub use ldt_write::to_ldt;
-pub use opening::Opening;
+pub use opening::{Opening, Shine};
 pub use symmetry::Symmetry;
 
 /// What a photometric file says, checked.

@@ -1,16 +1,25 @@
-//! The light-emitting area of a luminaire. Its *length* lies along +x of the luminaire frame,
-//! whatever a file format calls its axes, and it faces −z: only luminous sides shine upwards.
+//! The light-emitting surface of a luminaire: flat, or a convex body with the position at its centre.
+//! Its *length* lies along +x of the luminaire frame, whatever a file format calls its axes. A flat one
+//! faces −z; a body shines all around.
+//!
+//! Every point that is seen from a direction ω shines alike, L(ω) = I(ω)/A_p(ω), with A_p the projected
+//! area. So a body gives ∫ L cosθ dA/d² over what is seen of it, and light that leaves in a direction
+//! leaves from its outline in that direction: [`Opening::shine`], [`Opening::leaving`] and
+//! [`Opening::along`] are the same light for a desk, a particle and an eye.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-/// The light-emitting area of a luminaire, centred on its position, facing −z of its frame.
+use super::body::Body;
+use super::face::{Face, Onlooker};
+
+/// The light-emitting surface of a luminaire, centred on its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opening {
     /// Far-field photometry only: all light leaves from one point.
     Point,
-    /// A rectangle; luminous sides raise the projected area near the horizon.
+    /// A rectangle facing −z, or a box where it has luminous sides, whose top shines as well.
     Rect {
         /// Along the frame's x, m.
         length_m: f64,
@@ -21,76 +30,239 @@ pub enum Opening {
         /// Luminous height of the sides facing ±y, m.
         side_y_m: f64,
     },
-    /// A disc, or a cylinder when it has a luminous height.
+    /// A box whose opposite sides differ.
+    Sided {
+        /// Along the frame's x, m.
+        length_m: f64,
+        /// Along the frame's y, m.
+        width_m: f64,
+        /// Luminous heights of the sides facing +x, +y, −x, −y, m.
+        sides_m: [f64; 4],
+    },
+    /// A disc facing −z, or an upright cylinder when it has a luminous height.
     Disc {
         /// Diameter, m.
         diameter_m: f64,
         /// Luminous height, m.
         height_m: f64,
     },
+    /// An ellipse facing −z, or an upright elliptic cylinder when it has a luminous height.
+    Ellipse {
+        /// Diameter along the frame's x, m.
+        length_m: f64,
+        /// Diameter along the frame's y, m.
+        width_m: f64,
+        /// Luminous height, m.
+        height_m: f64,
+    },
+    /// An ellipsoid; a sphere where its diameters are equal.
+    Ellipsoid {
+        /// Diameter along the frame's x, m.
+        length_m: f64,
+        /// Diameter along the frame's y, m.
+        width_m: f64,
+        /// Diameter along the frame's z, m.
+        height_m: f64,
+    },
+    /// A lying cylinder, its ends included.
+    Tube {
+        /// Along its axis, m.
+        length_m: f64,
+        /// Level diameter, m.
+        width_m: f64,
+        /// Upright diameter, m.
+        height_m: f64,
+        /// Its axis lies along y instead of x.
+        across: bool,
+    },
+    /// An upright rectangle or ellipse that shines to both sides.
+    Upright {
+        /// Level edge, m.
+        width_m: f64,
+        /// Upright edge, m.
+        height_m: f64,
+        /// It faces ±y instead of ±x.
+        across: bool,
+        /// An ellipse.
+        round: bool,
+    },
+}
+
+/// A point of an opening that shines on a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Shine {
+    /// The point, luminaire frame, m.
+    pub at: DVec3,
+    /// Its weight: the mean of weight · I/d² over the unit square is ∫ L dω, and 1 for flat openings.
+    pub weight: f64,
 }
 
 impl Opening {
-    /// Area of the plane part in m²; 0 for a point.
-    pub fn area_m2(&self) -> f64 {
-        match *self {
-            Self::Point => 0.0,
-            Self::Rect { length_m, width_m, .. } => length_m * width_m,
-            Self::Disc { diameter_m, .. } => 0.25 * PI * diameter_m * diameter_m,
+    /// A rectangle facing −z.
+    pub fn rect(length_m: f64, width_m: f64) -> Self {
+        Self::Rect { length_m, width_m, side_x_m: 0.0, side_y_m: 0.0 }
+    }
+
+    /// A rectangle with luminous heights of the sides facing +x, +y, −x, −y.
+    pub fn sided(length_m: f64, width_m: f64, sides_m: [f64; 4]) -> Self {
+        let [east, north, west, south] = sides_m;
+        if (east - west).abs() > 0.0 || (north - south).abs() > 0.0 {
+            Self::Sided { length_m, width_m, sides_m }
+        } else {
+            Self::Rect { length_m, width_m, side_x_m: east, side_y_m: north }
         }
     }
 
-    /// Area in m² seen from a unit direction of the luminaire frame:
-    /// A_p = l·w·|cosγ| + w·h_x·|x| + l·h_y·|y|, disc π d²/4·|cosγ| + d·h·sinγ.
-    /// A flat opening is not seen from above (γ > 90°).
-    pub fn projected_area_m2(&self, direction: DVec3) -> f64 {
-        if self.is_flat() && direction.z > 0.0 {
-            return 0.0;
-        }
-        let sides_m2 = match *self {
-            Self::Point => 0.0,
+    /// Its kind and its sizes in m, by name, for files and lists.
+    pub fn sizes(&self) -> (&'static str, Vec<(&'static str, f64)>) {
+        match *self {
+            Self::Point => ("point", Vec::new()),
             Self::Rect { length_m, width_m, side_x_m, side_y_m } => {
-                width_m * side_x_m * direction.x.abs() + length_m * side_y_m * direction.y.abs()
+                let sizes = [
+                    ("length_m", length_m),
+                    ("width_m", width_m),
+                    ("side_x_m", side_x_m),
+                    ("side_y_m", side_y_m),
+                ];
+                ("rect", sizes.to_vec())
             }
-            Self::Disc { diameter_m, height_m } => diameter_m * height_m * direction.x.hypot(direction.y),
-        };
-        self.area_m2() * direction.z.abs() + sides_m2
+            Self::Sided { length_m, width_m, sides_m: [east, north, west, south] } => {
+                let sides = [("side_east_m", east), ("side_north_m", north), ("side_west_m", west)];
+                let mut sizes = vec![("length_m", length_m), ("width_m", width_m)];
+                sizes.extend(sides);
+                sizes.push(("side_south_m", south));
+                ("sided", sizes)
+            }
+            Self::Disc { diameter_m, height_m } => {
+                ("disc", vec![("diameter_m", diameter_m), ("height_m", height_m)])
+            }
+            Self::Ellipse { length_m, width_m, height_m } => {
+                ("ellipse", named([length_m, width_m, height_m]))
+            }
+            Self::Ellipsoid { length_m, width_m, height_m } => {
+                ("ellipsoid", named([length_m, width_m, height_m]))
+            }
+            Self::Tube { length_m, width_m, height_m, across } => {
+                (if across { "tube_across" } else { "tube" }, named([length_m, width_m, height_m]))
+            }
+            Self::Upright { width_m, height_m, across, round } => {
+                let name = match (across, round) {
+                    (false, false) => "upright_rect",
+                    (true, false) => "upright_rect_across",
+                    (false, true) => "upright_ellipse",
+                    (true, true) => "upright_ellipse_across",
+                };
+                (name, vec![("width_m", width_m), ("height_m", height_m)])
+            }
+        }
+    }
+
+    /// No extent that could be seen: all light leaves from one point.
+    pub fn is_point(&self) -> bool {
+        match self.plane() {
+            Some(plane) => !(plane.plane_area_m2() > 0.0),
+            None => self.body().is_none(),
+        }
+    }
+
+    /// Area in m² as seen from γ = 0: that of a plane facing down; 0 for a point and an upright plane.
+    pub fn area_m2(&self) -> f64 {
+        self.projected_area_m2(DVec3::NEG_Z)
+    }
+
+    /// Area in m² seen from a unit direction of the luminaire frame, for boxes and upright cylinders
+    /// A_p = l·w·|cosγ| + (w·h_x·|cosφ| + l·h_y·|sinφ|)·sinγ and π d²/4·|cosγ| + d·h·sinγ.
+    /// A flat opening that faces down is not seen from above (γ > 90°).
+    pub fn projected_area_m2(&self, direction: DVec3) -> f64 {
+        match (self.plane(), self.body()) {
+            (Some(plane), _) if matches!(self, Self::Upright { .. }) => two_sided_m2(&plane, direction),
+            (Some(plane), _) => plane.projected_area_m2(direction),
+            (None, Some(body)) => body.projected_area_m2(direction),
+            (None, None) => 0.0,
+        }
     }
 
     /// No luminous sides.
     pub fn is_flat(&self) -> bool {
+        self.body().is_none()
+    }
+
+    /// Radius in m of a ball about the centre that holds all of it.
+    pub fn radius_m(&self) -> f64 {
+        let half_diagonal = |x: f64, y: f64, z: f64| 0.5 * DVec3::new(x, y, z).length();
         match *self {
-            Self::Point => true,
-            Self::Rect { side_x_m, side_y_m, .. } => !(side_x_m > 0.0 || side_y_m > 0.0),
-            Self::Disc { height_m, .. } => !(height_m > 0.0),
+            Self::Point => 0.0,
+            Self::Rect { length_m, width_m, side_x_m, side_y_m } => {
+                half_diagonal(length_m, width_m, side_x_m.max(side_y_m))
+            }
+            Self::Sided { length_m, width_m, sides_m } => {
+                half_diagonal(length_m, width_m, sides_m.into_iter().fold(0.0, f64::max))
+            }
+            Self::Disc { diameter_m, height_m } => half_diagonal(diameter_m, 0.0, height_m),
+            Self::Ellipse { length_m, width_m, height_m } => {
+                half_diagonal(length_m.max(width_m), 0.0, height_m)
+            }
+            Self::Ellipsoid { length_m, width_m, height_m } => 0.5 * length_m.max(width_m).max(height_m),
+            Self::Tube { length_m, width_m, height_m, .. } => {
+                half_diagonal(length_m, width_m.max(height_m), 0.0)
+            }
+            Self::Upright { width_m, height_m, .. } => half_diagonal(width_m, height_m, 0.0),
         }
     }
 
-    /// Area-uniform map of the unit square onto the plane part (z = 0) in the luminaire frame;
-    /// a point gives the origin.
-    pub fn point(&self, u: [f64; 2]) -> DVec3 {
-        match *self {
-            Self::Point => DVec3::ZERO,
-            Self::Rect { length_m, width_m, .. } => {
-                DVec3::new((u[0] - 0.5) * length_m, (u[1] - 0.5) * width_m, 0.0)
-            }
-            Self::Disc { diameter_m, .. } => {
-                let radius_m = 0.5 * diameter_m * u[0].sqrt();
-                let (sin, cos) = (TAU * u[1]).sin_cos();
-                DVec3::new(radius_m * cos, radius_m * sin, 0.0)
+    /// A point of the opening that shines on `place` (luminaire frame); `None` where nothing of it is
+    /// seen from there.
+    ///
+    /// Flat: uniform by area, weight 1. A body with the visible area V(p), projected along the direction
+    /// w of the place p from its centre: uniform in that, so that the weight of a point with normal n
+    /// that sends ω to the place is V · (n·ω) / ((n·w) A_p(ω)).
+    #[inline]
+    pub fn shine(&self, place: DVec3, u: [f64; 2]) -> Option<Shine> {
+        match self.body() {
+            None => Some(Shine { at: self.plane_point(u), weight: 1.0 }),
+            Some(body) => {
+                let eye = Onlooker::at(place);
+                let seen_m2 = body.visible_m2(eye);
+                let (piece, u) = body.choose(&seen_m2, u)?;
+                body.shine_of(piece, seen_m2.iter().sum(), place, u)
             }
         }
     }
 
-    /// Whether a point of the plane z = 0 of the luminaire frame lies in the opening.
-    pub fn contains(&self, at: DVec3) -> bool {
-        match *self {
-            Self::Point => false,
-            Self::Rect { length_m, width_m, .. } => {
-                at.x.abs() <= 0.5 * length_m && at.y.abs() <= 0.5 * width_m
-            }
-            Self::Disc { diameter_m, .. } => at.x.hypot(at.y) <= 0.5 * diameter_m,
+    /// Number of smooth pieces of a body, of which [`Opening::shine_of_piece`] knows each; 0 if flat.
+    pub fn pieces(&self) -> usize {
+        self.body().map_or(0, |body| body.count)
+    }
+
+    /// The share of one piece in [`Opening::shine`]: the sum over all pieces of the means over the unit
+    /// square is the mean of `shine`. `None` where the piece is hidden.
+    pub fn shine_of_piece(&self, piece: usize, place: DVec3, u: [f64; 2]) -> Option<Shine> {
+        let body = self.body()?;
+        let seen_m2 = body.faces[piece].visible_m2(Onlooker::at(place));
+        body.shine_of(piece, seen_m2, place, u)
+    }
+
+    /// The point from which light leaves in a unit direction, uniform in the area projected along it.
+    pub fn leaving(&self, direction: DVec3, u: [f64; 2]) -> DVec3 {
+        let Some(body) = self.body() else { return self.plane_point(u) };
+        let eye = Onlooker::far(direction);
+        let chosen = body.choose(&body.visible_m2(eye), u);
+        chosen.map_or(DVec3::ZERO, |(index, u)| body.faces[index].visible_point(eye, u).0)
+    }
+
+    /// Where a ray (luminaire frame, unit direction) meets the opening: distance in m, and the projected
+    /// area A_p in m² by which the intensity towards the origin is to be divided. A flat opening is met
+    /// from both sides; from within a body nothing is met.
+    pub fn along(&self, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+        if let Some(plane @ Face::Plane { normal, .. }) = self.plane() {
+            let t = -origin.dot(normal) / direction.dot(normal);
+            let met = t > 0.0 && t.is_finite() && plane.covers(origin + direction * t);
+            return (met && plane.plane_area_m2() > 0.0).then(|| (t, two_sided_m2(&plane, direction)));
         }
+        let body = self.body()?;
+        let distances = body.faces[..body.count].iter().filter_map(|face| face.entered_at(origin, direction));
+        let nearest = distances.min_by(f64::total_cmp)?;
+        Some((nearest, body.projected_area_m2(-direction)))
     }
 
     /// Whether the opening is exactly the polygon of [`Opening::outline`] (and emits nothing sideways).
@@ -98,28 +270,113 @@ impl Opening {
         matches!(*self, Self::Rect { side_x_m, side_y_m, .. } if !(side_x_m > 0.0 || side_y_m > 0.0))
     }
 
-    /// Corners of the plane part, counter-clockwise seen from +z: four of a rectangle, 32 of a disc
-    /// (inscribed), none of a point.
+    /// Corners of the outline on the plan, counter-clockwise seen from +z: four of a rectangle, 32 of a
+    /// round one (inscribed), none of a point.
     pub fn outline(&self) -> Vec<DVec3> {
+        let (half, round) = match *self {
+            Self::Point => return Vec::new(),
+            Self::Rect { length_m, width_m, .. } | Self::Sided { length_m, width_m, .. } => {
+                ([length_m, width_m], false)
+            }
+            Self::Disc { diameter_m, .. } => ([diameter_m; 2], true),
+            Self::Ellipse { length_m, width_m, .. } | Self::Ellipsoid { length_m, width_m, .. } => {
+                ([length_m, width_m], true)
+            }
+            Self::Tube { length_m, width_m, across: false, .. } => ([length_m, width_m], false),
+            Self::Tube { length_m, width_m, across: true, .. } => ([width_m, length_m], false),
+            Self::Upright { width_m, across: false, .. } => ([0.0, width_m], false),
+            Self::Upright { width_m, across: true, .. } => ([width_m, 0.0], false),
+        };
+        let [x, y] = half.map(|edge| 0.5 * edge);
+        if !round {
+            return [(x, y), (-x, y), (-x, -y), (x, -y)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        }
+        let corner = |k: i32| {
+            let (sin, cos) = (TAU * f64::from(k) / 32.0).sin_cos();
+            DVec3::new(x * cos, y * sin, 0.0)
+        };
+        (0..32).map(corner).collect()
+    }
+
+    /// The area-uniform point of a flat opening; the origin for a point.
+    pub fn plane_point(&self, u: [f64; 2]) -> DVec3 {
+        self.plane().map_or(DVec3::ZERO, |plane| plane.plane_point(u))
+    }
+
+    /// The one plane of a flat opening.
+    #[inline]
+    fn plane(&self) -> Option<Face> {
+        let level = |length_m: f64, width_m: f64, round: bool| Face::Plane {
+            centre: DVec3::ZERO,
+            a: DVec3::X * (0.5 * length_m),
+            b: DVec3::Y * (0.5 * width_m),
+            normal: DVec3::NEG_Z,
+            round,
+        };
         match *self {
-            Self::Point => Vec::new(),
-            Self::Rect { length_m, width_m, .. } => {
-                let (x, y) = (0.5 * length_m, 0.5 * width_m);
-                [(x, y), (-x, y), (-x, -y), (x, -y)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec()
+            Self::Rect { length_m, width_m, side_x_m, side_y_m } if !(side_x_m.max(side_y_m) > 0.0) => {
+                Some(level(length_m, width_m, false))
             }
-            Self::Disc { diameter_m, .. } => {
-                let corner = |k: i32| {
-                    let (sin, cos) = (TAU * f64::from(k) / 32.0).sin_cos();
-                    0.5 * diameter_m * DVec3::new(cos, sin, 0.0)
-                };
-                (0..32).map(corner).collect()
+            Self::Disc { diameter_m, height_m } if !(height_m > 0.0) => {
+                Some(level(diameter_m, diameter_m, true))
             }
+            Self::Ellipse { length_m, width_m, height_m } if !(height_m > 0.0) => {
+                Some(level(length_m, width_m, true))
+            }
+            Self::Upright { width_m, height_m, across, round } => {
+                let (level, normal) = if across { (DVec3::X, DVec3::Y) } else { (DVec3::Y, DVec3::X) };
+                let (a, b) = (level * (0.5 * width_m), DVec3::Z * (0.5 * height_m));
+                Some(Face::Plane { centre: DVec3::ZERO, a, b, normal, round })
+            }
+            _ => None,
+        }
+    }
+
+    /// The pieces of an opening that is not flat.
+    #[inline]
+    fn body(&self) -> Option<Body> {
+        let upright = |length_m: f64, width_m: f64, height_m: f64| {
+            let (a, b) = (DVec3::X * (0.5 * length_m), DVec3::Y * (0.5 * width_m));
+            Body::cylinder(DVec3::Z * (0.5 * height_m), a, b)
+        };
+        match *self {
+            Self::Rect { length_m, width_m, side_x_m, side_y_m } if side_x_m.max(side_y_m) > 0.0 => {
+                Some(Body::cuboid(length_m, width_m, [side_x_m, side_y_m, side_x_m, side_y_m]))
+            }
+            Self::Sided { length_m, width_m, sides_m } => Some(Body::cuboid(length_m, width_m, sides_m)),
+            Self::Disc { diameter_m, height_m } if height_m > 0.0 => {
+                Some(upright(diameter_m, diameter_m, height_m))
+            }
+            Self::Ellipse { length_m, width_m, height_m } if height_m > 0.0 => {
+                Some(upright(length_m, width_m, height_m))
+            }
+            Self::Ellipsoid { length_m, width_m, height_m } => {
+                let semi = 0.5 * DVec3::new(length_m, width_m, height_m);
+                Some(Body { faces: [Face::Ellipsoid { semi }; 6], count: 1 })
+            }
+            Self::Tube { length_m, width_m, height_m, across } => {
+                let (axis, level) = if across { (DVec3::Y, DVec3::X) } else { (DVec3::X, DVec3::Y) };
+                let (a, b) = (level * (0.5 * width_m), DVec3::Z * (0.5 * height_m));
+                Some(Body::cylinder(axis * (0.5 * length_m), a, b))
+            }
+            _ => None,
         }
     }
 }
 
+fn named(sizes_m: [f64; 3]) -> Vec<(&'static str, f64)> {
+    ["length_m", "width_m", "height_m"].into_iter().zip(sizes_m).collect()
+}
+
+/// A plane's projected area from either side, m².
+fn two_sided_m2(plane: &Face, direction: DVec3) -> f64 {
+    plane.projected_area_m2(direction) + plane.projected_area_m2(-direction)
+}
+
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     const BATTEN: Opening = Opening::Rect { length_m: 1.2, width_m: 0.1, side_x_m: 0.02, side_y_m: 0.05 };
@@ -151,9 +408,10 @@ mod tests {
         let disc = Opening::Disc { diameter_m: 2.0, height_m: 0.0 };
         let n = 64;
         let at = |k: i32| (f64::from(k) + 0.5) / f64::from(n);
-        let sum: f64 = (0..n * n).map(|k| disc.point([at(k / n), at(k % n)]).length_squared()).sum();
+        let sum: f64 = (0..n * n).map(|k| disc.plane_point([at(k / n), at(k % n)]).length_squared()).sum();
         assert!((sum / f64::from(n * n) - 0.5).abs() < 1e-12);
-        assert!((BATTEN.point([0.0, 1.0]) - DVec3::new(-0.6, 0.05, 0.0)).length() < 1e-15);
+        let panel = Opening::rect(1.2, 0.1);
+        assert!((panel.plane_point([0.0, 1.0]) - DVec3::new(-0.6, 0.05, 0.0)).length() < 1e-15);
     }
 
     /// Catches: a clockwise or missing corner.

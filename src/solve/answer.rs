@@ -123,7 +123,7 @@ fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut 
             continue;
         }
         let sequence = Stratified::new(rng);
-        let samples = if source.area_m2 > 0.0 { points } else { 1 };
+        let samples = if source.is_point() { 1 } else { points };
         for sample in 0..samples {
             let u = if samples == 1 { rng.uniforms() } else { sequence.point(sample, rng) };
             let responds = |direction| receiver.kernels.iter().any(|kernel| kernel.response(direction) > 0.0);

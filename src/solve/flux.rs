@@ -99,7 +99,7 @@ impl FluxSource {
                 let lamp = &scene.luminaires[index];
                 let (local, _) = lamp.kind.distribution.sample_direction(u);
                 let direction = lamp.world_from_luminaire * local;
-                let at = lamp.position + lamp.world_from_luminaire * lamp.kind.opening.point(place);
+                let at = lamp.position + lamp.world_from_luminaire * lamp.kind.opening.leaving(local, place);
                 (at + direction * lift, direction)
             }
             Kind::Triangle { index, front } => {
@@ -118,7 +118,7 @@ impl FluxSource {
         match self.kind {
             Kind::Luminaire(index) => {
                 let lamp = &scene.luminaires[index];
-                (&lamp.body, !(lamp.kind.opening.area_m2() > 0.0))
+                (&lamp.body, lamp.kind.opening.is_point())
             }
             Kind::Triangle { .. } => (&[], false),
         }

@@ -50,7 +50,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
 
 /// One luminaire at random, one point of its opening, straight or through panes.
 fn lamp_light(scene: &Scene, at: DVec3, kernel: &Kernel, weight: f64, rng: &mut Rng, out: &mut [f64]) {
-    if let Some((lx, direction, channel)) = one_lamp(scene, rng, |_| at) {
+    if let Some((lx, direction, channel)) = one_lamp(scene, rng, at, |_| at) {
         out[channel * PARTS + Part::Direct as usize] += lx * kernel.response(direction) * weight;
     }
 }
@@ -59,6 +59,7 @@ fn lamp_light(scene: &Scene, at: DVec3, kernel: &Kernel, weight: f64, rng: &mut 
 fn one_lamp(
     scene: &Scene,
     rng: &mut Rng,
+    near: DVec3,
     origin_towards: impl Fn(DVec3) -> DVec3,
 ) -> Option<(f64, DVec3, usize)> {
     let count = scene.luminaires.len();
@@ -67,7 +68,9 @@ fn one_lamp(
     }
     let chosen = ((rng.uniform() * count as f64) as usize).min(count - 1);
     let lamp = &scene.luminaires[chosen];
-    let from = lamp.position + lamp.world_from_luminaire * lamp.kind.opening.point(rng.uniforms());
+    let place = lamp.world_from_luminaire.transpose() * (near - lamp.position);
+    let shine = lamp.kind.opening.shine(place, rng.uniforms())?;
+    let from = lamp.position + lamp.world_from_luminaire * shine.at;
     let at = origin_towards(from);
     let distance_m = from.distance(at);
     let direction = (from - at) / distance_m;
@@ -78,7 +81,7 @@ fn one_lamp(
     }
     let reach = distance_m - 2.0 * scene.tracer.offset_m();
     let passed = scene.tracer.transmittance(at, direction, reach, &lamp.body);
-    let lx = intensity_cd / (distance_m * distance_m) * passed * count as f64;
+    let lx = shine.weight * intensity_cd / (distance_m * distance_m) * passed * count as f64;
     Some((lx, direction, scene.channel_of[chosen]))
 }
 
@@ -124,7 +127,7 @@ fn trace(
         if !next.specular {
             diffuse_seen = true;
             let side = |from: DVec3| point + normal * lift * (from - point).dot(normal).signum();
-            if let Some((lx, towards, channel)) = one_lamp(scene, rng, side) {
+            if let Some((lx, towards, channel)) = one_lamp(scene, rng, point, side) {
                 let local = frame.transpose() * towards;
                 let value = bsdf.f(local, DVec3::Z) * local.z.abs() * lx * weight;
                 out[channel * PARTS + Part::Indirect as usize] += value;
@@ -155,16 +158,13 @@ fn add_lamps(
     out: &mut [f64],
 ) {
     for (index, lamp) in scene.luminaires.iter().enumerate() {
-        let area_m2 = lamp.kind.opening.area_m2();
         let into = lamp.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - lamp.position), into * direction);
-        let t = -o.z / d.z;
+        let Some((t, projected_m2)) = lamp.kind.opening.along(o, d) else { continue };
         // The opening may lie *in* the surface that ends the ray.
-        let before = t - 2.0 * scene.tracer.offset_m() < reach;
-        if area_m2 > 0.0 && t > 0.0 && before && lamp.kind.opening.contains(o + d * t) {
+        if t - 2.0 * scene.tracer.offset_m() < reach {
             let intensity_cd = lamp.kind.distribution.intensity_along(-d) * lamp.dim;
-            out[scene.channel_of[index] * PARTS + part as usize] +=
-                weight * intensity_cd / (area_m2 * d.z.abs());
+            out[scene.channel_of[index] * PARTS + part as usize] += weight * intensity_cd / projected_m2;
         }
     }
 }

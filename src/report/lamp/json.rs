@@ -1,7 +1,8 @@
 //! `lamp info --format json`: one object per luminaire, full precision. A file that cannot be read
 //! has the same keys, all null but its name and one finding.
 
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 use super::super::ReportError;
 use super::{Batch, format_name};
@@ -23,12 +24,18 @@ struct Entry<'a> {
     findings: Vec<Found<'a>>,
 }
 
-#[derive(Serialize)]
-#[serde(tag = "shape", rename_all = "lowercase")]
-enum Shape {
-    Point,
-    Rect { length_m: f64, width_m: f64, side_x_m: f64, side_y_m: f64 },
-    Disc { diameter_m: f64, height_m: f64 },
+struct Shape(Opening);
+
+impl Serialize for Shape {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (name, sizes) = self.0.sizes();
+        let mut map = serializer.serialize_map(Some(1 + sizes.len()))?;
+        map.serialize_entry("shape", name)?;
+        for (size, m) in sizes {
+            map.serialize_entry(size, &m)?;
+        }
+        map.end()
+    }
 }
 
 #[derive(Serialize)]
@@ -81,18 +88,8 @@ fn entry(luminaire: &Lamp) -> Entry<'_> {
         lor: info.lor,
         power_w: info.power_w,
         i_max_cd: Some(info.i_max.cd),
-        opening: Some(shape(info.opening)),
+        opening: Some(Shape(info.opening)),
         symmetry: Some(info.symmetry.key()),
         findings: luminaire.findings.iter().map(Found::from).collect(),
-    }
-}
-
-fn shape(opening: Opening) -> Shape {
-    match opening {
-        Opening::Point => Shape::Point,
-        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
-            Shape::Rect { length_m, width_m, side_x_m, side_y_m }
-        }
-        Opening::Disc { diameter_m, height_m } => Shape::Disc { diameter_m, height_m },
     }
 }

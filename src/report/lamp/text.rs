@@ -116,10 +116,49 @@ fn opening(opening: Opening) -> String {
             };
             format!("rectangle {} × {} m (length × width){sides}", m(length_m), m(width_m))
         }
+        Opening::Sided { length_m, width_m, sides_m: [c90, c180, c270, c0] } => format!(
+            "rectangle {} × {} m (length × width), luminous sides C0 {} · C90 {} · C180 {} · C270 {} m",
+            m(length_m),
+            m(width_m),
+            m(c0),
+            m(c90),
+            m(c180),
+            m(c270)
+        ),
         Opening::Disc { diameter_m, height_m } => {
             let side =
                 if height_m > 0.0 { format!(", luminous height {} m", m(height_m)) } else { String::new() };
             format!("disc ⌀ {} m{side}", m(diameter_m))
+        }
+        Opening::Ellipse { length_m, width_m, height_m } => {
+            let side =
+                if height_m > 0.0 { format!(", luminous height {} m", m(height_m)) } else { String::new() };
+            format!("ellipse {} × {} m (length × width){side}", m(length_m), m(width_m))
+        }
+        Opening::Ellipsoid { length_m, width_m, height_m } => {
+            if (length_m - width_m).abs().max((length_m - height_m).abs()) < 1e-9 {
+                return format!("sphere ⌀ {} m", m(length_m));
+            }
+            format!(
+                "ellipsoid {} × {} × {} m (length × width × height)",
+                m(length_m),
+                m(width_m),
+                m(height_m)
+            )
+        }
+        Opening::Tube { length_m, width_m, height_m, across } => {
+            let way = if across { "across (along C0–C180)" } else { "along C90–C270" };
+            format!(
+                "lying cylinder, {} m {way}, ⌀ {} × {} m (level × upright)",
+                m(length_m),
+                m(width_m),
+                m(height_m)
+            )
+        }
+        Opening::Upright { width_m, height_m, across, round } => {
+            let shape = if round { "ellipse" } else { "rectangle" };
+            let faces = if across { "C0 and C180" } else { "C90 and C270" };
+            format!("upright {shape} {} × {} m (width × height) facing {faces}", m(width_m), m(height_m))
         }
     }
 }

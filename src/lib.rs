@@ -10,6 +10,7 @@ pub mod field;
 pub mod geometry;
 pub mod glare;
 pub mod grid;
+pub mod image;
 pub mod judge;
 pub mod lamp;
 pub mod luminaire;

@@ -96,3 +96,23 @@ fn norm_files() {
         assert!(Standard::parse(&text, "corpus").is_err(), "{}", path.display());
     }
 }
+
+/// Catches: a panic, an allocation as large as a file claims, luminances that are no numbers.
+#[test]
+fn images() {
+    let refused =
+        ["absurd_size.exr", "absurd_size.hdr", "endless_header.hdr", "no_luminance.exr", "subsampled.exr"];
+    for path in corpus("image") {
+        let (name, bytes) = (stem(&path), fs::read(&path).expect("readable"));
+        let whole = gershun::image::read(&bytes);
+        assert_eq!(whole.is_err(), refused.contains(&name.as_str()), "{name}: {whole:?}");
+        damaged(&bytes, 1, |bytes| {
+            let Ok(image) = gershun::image::read(bytes) else { return };
+            assert!(image.luminance_cd_m2.iter().all(|value| value.is_finite()), "{name}");
+            assert_eq!(image.luminance_cd_m2.len(), image.width * image.height);
+            let _ = image.illuminance_lx();
+            let again = gershun::image::read(&gershun::image::write_hdr(&image)).expect("own bytes");
+            assert_eq!(again.size(), image.size());
+        });
+    }
+}

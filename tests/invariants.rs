@@ -211,7 +211,7 @@ fn solve_knows_no_norm_no_observer_and_no_report() {
     holds(rule, "solve/mod.rs", "let x = crate::norm::bundled();\n");
 }
 
-/// Invariant 3. Sobol numbers and glTF's own numbers are f32 and become f64 where they are read.
+/// Invariant 3. Sobol numbers and the numbers of glTF and OpenEXR are f32 and become f64 where they are read.
 #[test]
 fn f32_and_obvhs_live_in_the_ray_tracer() {
     let rule: Rule = |source| {
@@ -219,7 +219,7 @@ fn f32_and_obvhs_live_in_the_ray_tracer() {
             return Vec::new();
         }
         let mut found = source.with(&["obvhs"]);
-        if !source.is_in(&["rng", "geometry/gltf"]) {
+        if !source.is_in(&["rng", "geometry/gltf", "image/exr"]) {
             found.extend(source.with_words(&["f32", "Vec3", "Vec3A"]));
         }
         found

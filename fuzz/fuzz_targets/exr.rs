@@ -1,0 +1,7 @@
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    if let Ok(image) = gershun::image::read_exr(bytes) {
+        assert!(image.luminance_cd_m2.iter().all(|value| value.is_finite()));
+    }
+});

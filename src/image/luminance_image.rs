@@ -1,0 +1,47 @@
+//! An image in cd/m², and what an eye at its centre of projection receives.
+
+use super::View;
+
+/// Luminances seen through a view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LuminanceImage {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Where the pixels look; `None` if the file does not say, or not in a way that can be used.
+    pub view: Option<View>,
+    /// Row by row from the upper left, cd/m²; 0 outside the projection.
+    pub luminance_cd_m2: Vec<f64>,
+    /// Standard error of each pixel in cd/m², where the method states one.
+    pub standard_error_cd_m2: Option<Vec<f64>>,
+    /// What is to be known about the image: assumptions made in reading, or how it was computed.
+    pub notes: Vec<String>,
+}
+
+impl LuminanceImage {
+    /// An image without remarks.
+    pub fn new(width: usize, height: usize, view: Option<View>, luminance_cd_m2: Vec<f64>) -> Self {
+        assert_eq!(luminance_cd_m2.len(), width * height, "one luminance a pixel");
+        Self { width, height, view, luminance_cd_m2, standard_error_cd_m2: None, notes: Vec::new() }
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// Illuminance in lx on the plane of the eye, E_v = Σ L ω cos θ over what lies in front of it;
+    /// `None` without a view. It is the whole E_v only if the view sees the whole half-space.
+    pub fn illuminance_lx(&self) -> Option<f64> {
+        let view = self.view?;
+        let mut total = 0.0;
+        for row in 0..self.height {
+            for column in 0..self.width {
+                let [_, projected] = view.solid_angles_sr(self.size(), [column, row]);
+                total += self.luminance_cd_m2[row * self.width + column] * projected;
+            }
+        }
+        Some(total)
+    }
+}

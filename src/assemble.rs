@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::emitters::{Emitters, Seen};
-use crate::glare::ugr::NO_SOURCE;
+use crate::glare::source::NO_SOURCE;
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{

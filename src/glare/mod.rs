@@ -5,9 +5,24 @@
 // `!(x > 0.0)` is the guard that stops NaN too.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+pub mod cgi;
+pub mod dgi;
+pub mod dgp;
+pub mod discomfort;
+pub mod ggr;
+pub mod gr;
+pub mod index;
+pub mod luminances;
 pub mod position_index;
+pub mod propagate;
+pub mod source;
+pub mod threshold_increment;
+pub mod ugp;
 pub mod ugr;
+pub mod ugr_exp;
 pub mod ugr_table;
+pub mod vcp;
+pub mod veiling;
 pub mod wall_luminance;
 
 /// A file of the reference data (`GERSHUN_DATA`, else `../shared/data` beside the crate). The data

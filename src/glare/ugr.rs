@@ -1,6 +1,7 @@
 //! Unified glare rating. The background luminance belongs to the *indirect vertical* illuminance at
 //! the eye (L_b = E_i/π): with the sources' own light in it the index comes out low.
 
+use super::source::{GlareSource, positioned_sum, positive, square};
 use crate::units::{Nits, Undefined};
 
 /// Below this projected area (m²) UGR weights the intensity instead of the luminance, CIE 147.
@@ -12,39 +13,18 @@ pub const LARGE_SOURCE_M2: f64 = 1.5;
 /// Solid angles (sr) for which UGR was fitted.
 pub const VALID_SOLID_ANGLE_SR: [f64; 2] = [3e-4, 0.1];
 
-/// The reason why there is no index where nothing shines: no glare, unlike every other reason.
-pub const NO_SOURCE: &str = "no light source is visible";
-
-/// A source as one eye sees it; what is hidden from the eye is not part of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GlareSource {
-    /// Mean luminance toward the eye, weighted by solid angle.
-    pub luminance: Nits,
-    /// Solid angle of the visible part.
-    pub solid_angle_sr: f64,
-    /// Position index P, 1 on the line of sight.
-    pub position_index: f64,
-    /// Luminous area projected toward the eye; decides about the small-source form.
-    pub projected_area_m2: f64,
-    /// Intensity toward the eye; used by the small-source form only.
-    pub intensity_cd: f64,
-    /// Distance from the eye; used by the small-source form only.
-    pub distance_m: f64,
-}
-
 /// UGR = 8 lg(0.25/L_b · Σ L²ω/P²), CIE 117:1995; L²ω is replaced by 200 I²/r² for sources with
 /// less than 0.005 m² of projected area, CIE 147. Initial flux, no maintenance factor.
 ///
 /// # Errors
 /// No source shines, the background is not positive, or a source is no physical one.
 pub fn ugr(sources: &[GlareSource], background: Nits) -> Result<f64, Undefined> {
-    index(sources, background, |source| {
-        if source.projected_area_m2 < SMALL_SOURCE_M2 {
-            let per_distance = source.intensity_cd / source.distance_m;
-            200.0 * per_distance * per_distance
-        } else {
-            by_luminance(source)
+    index(sources, background, |source| match source.extent {
+        Some(extent) if extent.projected_area_m2 < SMALL_SOURCE_M2 => {
+            let per_distance = extent.intensity_cd / extent.distance_m;
+            Ok(200.0 * per_distance * per_distance)
         }
+        Some(_) | None => square(source),
     })
 }
 
@@ -53,44 +33,26 @@ pub fn ugr(sources: &[GlareSource], background: Nits) -> Result<f64, Undefined> 
 /// # Errors
 /// As for [`ugr`].
 pub fn ugr_by_luminance(sources: &[GlareSource], background: Nits) -> Result<f64, Undefined> {
-    index(sources, background, by_luminance)
-}
-
-/// L²ω, cd²·sr/m⁴.
-fn by_luminance(source: &GlareSource) -> f64 {
-    source.luminance.0 * source.luminance.0 * source.solid_angle_sr
+    index(sources, background, square)
 }
 
 /// 8 lg(0.25/L_b · Σ term/P²).
 fn index(
     sources: &[GlareSource],
     background: Nits,
-    term: impl Fn(&GlareSource) -> f64,
+    term: impl Fn(&GlareSource) -> Result<f64, Undefined>,
 ) -> Result<f64, Undefined> {
-    let mut sum = 0.0;
-    for source in sources {
-        if !(source.position_index >= 1.0 - 1e-9) {
-            return Err(Undefined::because("a source has no valid position index"));
-        }
-        let glare = term(source);
-        if !(glare.is_finite() && glare >= 0.0) {
-            return Err(Undefined::because("a source has no finite luminance"));
-        }
-        sum += glare / (source.position_index * source.position_index);
-    }
-    if !(sum > 0.0) {
-        return Err(Undefined::because(NO_SOURCE));
-    }
-    if !(background.0 > 0.0) {
-        return Err(Undefined::because("the background luminance is not positive"));
-    }
-    Ok(8.0 * (0.25 / background.0 * sum).log10())
+    let sum = positioned_sum(sources, 2, term)?;
+    let background = positive(background.0, "the background luminance is not positive")?;
+    Ok(8.0 * (0.25 / background * sum).log10())
 }
 
 /// What makes UGR doubtful for these sources, one note per reason; the index is computed all the same.
 pub fn validity(sources: &[GlareSource]) -> Vec<String> {
     let [smallest, largest] = VALID_SOLID_ANGLE_SR;
-    let of_ordinary_size = |source: &&GlareSource| source.projected_area_m2 >= SMALL_SOURCE_M2;
+    let area_m2 = |source: &GlareSource| source.extent.map(|extent| extent.projected_area_m2);
+    let of_ordinary_size =
+        |source: &&GlareSource| area_m2(source).is_none_or(|area_m2| area_m2 >= SMALL_SOURCE_M2);
     let count = |is: &dyn Fn(&GlareSource) -> bool| {
         sources.iter().filter(of_ordinary_size).filter(|source| is(source)).count()
     };
@@ -104,7 +66,7 @@ pub fn validity(sources: &[GlareSource]) -> Vec<String> {
             format!("seen under more than {largest} sr, where UGR is not validated"),
         ),
         (
-            count(&|source| source.projected_area_m2 > LARGE_SOURCE_M2),
+            count(&|source| area_m2(source).is_some_and(|area_m2| area_m2 > LARGE_SOURCE_M2)),
             format!("with more than {LARGE_SOURCE_M2} m² of projected area, which UGR understates"),
         ),
     ]
@@ -117,6 +79,7 @@ pub fn validity(sources: &[GlareSource]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::glare::source::Extent;
 
     fn panel(luminance: f64, solid_angle_sr: f64, position_index: f64) -> GlareSource {
         let distance_m: f64 = 3.0;
@@ -125,9 +88,13 @@ mod tests {
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
-            projected_area_m2,
-            intensity_cd: luminance * projected_area_m2,
-            distance_m,
+            off_axis_deg: 20.0,
+            eye_lx: luminance * solid_angle_sr * 0.94,
+            extent: Some(Extent {
+                projected_area_m2,
+                intensity_cd: luminance * projected_area_m2,
+                distance_m,
+            }),
         }
     }
 
@@ -154,9 +121,11 @@ mod tests {
     fn a_small_source_counts_by_its_intensity() {
         // At exactly 0.005 m² both forms agree: L²ω = I²/(A r²) = 200 I²/r². Catches a jump at the border.
         let mut source = panel(1e5, 0.005 / 9.0, 1.5);
-        source.projected_area_m2 = 0.005;
+        let sized = |area_m2| Some(Extent { projected_area_m2: area_m2, ..source.extent.unwrap() });
+        let [at_border, below] = [0.005, 0.004_999].map(sized);
+        source.extent = at_border;
         let ordinary = ugr(&[source], Nits(10.0)).unwrap();
-        source.projected_area_m2 = 0.004_999;
+        source.extent = below;
         assert!((ugr(&[source], Nits(10.0)).unwrap() - ordinary).abs() < 1e-9);
         // Smaller still, at the same intensity: the luminance soars, the index stays.
         source.luminance = Nits(1e7);

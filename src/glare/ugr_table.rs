@@ -5,7 +5,8 @@
 use glam::DVec3;
 
 use super::position_index::cie117_at;
-use super::ugr::{GlareSource, LARGE_SOURCE_M2, ugr_by_luminance};
+use super::source::{Extent, GlareSource};
+use super::ugr::{LARGE_SOURCE_M2, ugr_by_luminance};
 use super::wall_luminance::{direct_flux, transfer_factors, wall_luminance};
 use crate::units::{Nits, Undefined};
 
@@ -290,13 +291,14 @@ fn visible_sources(input: &TableInput, spacing_m: f64, rows: [usize; 2], sight: 
             let (direction, distance_m) = (to_eye.normalize(), to_eye.length());
             let intensity_cd = (input.intensity_cd)(direction);
             let projected_area_m2 = (input.projected_area_m2)(direction);
+            let off_axis = r_m / distance_m;
             sources.push(GlareSource {
                 luminance: Nits(intensity_cd / projected_area_m2),
                 solid_angle_sr: projected_area_m2 / (distance_m * distance_m),
                 position_index,
-                projected_area_m2,
-                intensity_cd,
-                distance_m,
+                off_axis_deg: off_axis.acos().to_degrees(),
+                eye_lx: intensity_cd * off_axis / (distance_m * distance_m),
+                extent: Some(Extent { projected_area_m2, intensity_cd, distance_m }),
             });
         }
     }

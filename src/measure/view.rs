@@ -7,7 +7,8 @@ use super::{Answers, Gauged};
 use crate::emitters::{Emitters, Seen};
 use crate::estimate::{Estimate, quantile};
 use crate::glare::position_index::{cie117_table, levin_iwata};
-use crate::glare::ugr::{GlareSource, ugr, validity};
+use crate::glare::source::{Extent, GlareSource};
+use crate::glare::ugr::{ugr, validity};
 use crate::outcome::GlareSourceOutcome;
 use crate::scene::Channel;
 use crate::solve::Part;
@@ -59,9 +60,13 @@ pub fn glare(
             luminance: Nits(weight * one.luminance_cd_m2().unwrap_or(0.0)),
             solid_angle_sr: area,
             position_index,
-            projected_area_m2: one.projected_area_m2,
-            intensity_cd: weight * one.normal_lx.value * one.distance_m * one.distance_m,
-            distance_m: one.distance_m,
+            off_axis_deg: one.direction.dot(gaze).clamp(-1.0, 1.0).acos().to_degrees(),
+            eye_lx: weight * one.normal_lx.value * one.direction.dot(gaze),
+            extent: Some(Extent {
+                projected_area_m2: one.projected_area_m2,
+                intensity_cd: weight * one.normal_lx.value * one.distance_m * one.distance_m,
+                distance_m: one.distance_m,
+            }),
         };
         // L²ω = X²/ω with X = ∫L dω: relative variance at most (2 σ_X/X + σ_ω/ω)².
         let relative = 2.0 * one.normal_lx.se / one.normal_lx.value

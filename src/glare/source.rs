@@ -1,0 +1,188 @@
+//! What one eye sees, as the indices take it: sources, illuminances at the eye, background. E_v and
+//! its parts are on the plane *perpendicular to the line of sight*, never horizontal.
+
+use crate::units::{Nits, Undefined};
+
+/// The reason why there is no index where nothing shines: no glare, unlike every other reason.
+pub const NO_SOURCE: &str = "no light source is visible";
+
+/// A source as one eye sees it; what is hidden from the eye is not part of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlareSource {
+    /// Mean luminance toward the eye, weighted by solid angle; 0 for a point.
+    pub luminance: Nits,
+    /// Solid angle of the visible part, sr; 0 for a point.
+    pub solid_angle_sr: f64,
+    /// Position index P, 1 on the line of sight.
+    pub position_index: f64,
+    /// Angle between the line of sight and the source, θ, degrees.
+    pub off_axis_deg: f64,
+    /// Illuminance that it gives on the plane of the eye, L ω cos θ, lx.
+    pub eye_lx: f64,
+    /// What is known of its size beside the solid angle; `None` in an image, which tells no distances.
+    pub extent: Option<Extent>,
+}
+
+/// A source's size in metres, which decides between the forms of UGR.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Luminous area projected toward the eye, m².
+    pub projected_area_m2: f64,
+    /// Intensity toward the eye, cd.
+    pub intensity_cd: f64,
+    /// Distance from the eye, m.
+    pub distance_m: f64,
+}
+
+/// One view of one eye: everything that an index may ask for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sight {
+    /// The sources.
+    pub sources: Vec<GlareSource>,
+    /// Illuminance on the plane of the eye, sources included, E_v, lx.
+    pub e_v_lx: f64,
+    /// The part of E_v that comes from the sources, E_dir, lx.
+    pub e_direct_lx: f64,
+    /// Background luminance L_b, cd/m²: (E_v − E_dir)/π unless the convention says otherwise.
+    pub background: Nits,
+    /// Mean luminance of the field of view weighted by solid angle, cd/m²; VCP asks for it.
+    pub mean: Option<Nits>,
+    /// What only some indices ask for.
+    pub given: Given,
+}
+
+/// Assumptions about observer and surroundings that no view can tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Given {
+    /// Age of the observer, years.
+    pub age_years: f64,
+    /// Eye pigmentation p of CIE 146: 0 black, 0.5 brown, 1.0 light, 1.2 very light.
+    pub pigment: f64,
+    /// Coefficients of DGP.
+    pub dgp: DgpForm,
+    /// Whether DGP is lowered in dim scenes.
+    pub low_light: bool,
+    /// Share of the ceiling that shines, 0.15 to 1; GGR asks for it.
+    pub ceiling_coverage: Option<f64>,
+    /// Illuminated ground; GR asks for it.
+    pub ground: Option<Ground>,
+    /// Mean luminance of the road L_av, cd/m²; f_TI asks for it.
+    pub road: Option<Nits>,
+}
+
+/// The ground of an outdoor area, CIE 112.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Mean horizontal illuminance, lx.
+    pub mean_lx: f64,
+    /// Diffuse reflectance.
+    pub reflectance: f64,
+}
+
+/// Which of the two published sets of coefficients of DGP.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DgpForm {
+    /// 0.092 and 0.159, as evalglare 3.06 computes.
+    #[default]
+    Evalglare,
+    /// 0.0918 and 0.16, as Wienold and Christoffersen published.
+    Published,
+}
+
+impl Default for Given {
+    /// A reader of 25 with brown eyes; nothing assumed about the surroundings.
+    fn default() -> Self {
+        Self {
+            age_years: 25.0,
+            pigment: 0.5,
+            dgp: DgpForm::Evalglare,
+            low_light: false,
+            ceiling_coverage: None,
+            ground: None,
+            road: None,
+        }
+    }
+}
+
+impl Sight {
+    /// The part of E_v that does not come from the sources, lx.
+    pub fn e_indirect_lx(&self) -> f64 {
+        self.e_v_lx - self.e_direct_lx
+    }
+}
+
+/// Σ term/P^`power` over the sources; never 0.
+///
+/// # Errors
+/// No source shines, or one of them is no physical one.
+pub fn positioned_sum(
+    sources: &[GlareSource],
+    power: i32,
+    term: impl Fn(&GlareSource) -> Result<f64, Undefined>,
+) -> Result<f64, Undefined> {
+    let mut sum = 0.0;
+    for source in sources {
+        if !(source.position_index >= 1.0 - 1e-9) {
+            return Err(Undefined::because("a source has no valid position index"));
+        }
+        let glare = term(source)?;
+        if !(glare.is_finite() && glare >= 0.0) {
+            return Err(Undefined::because("a source has no finite luminance"));
+        }
+        sum += glare / source.position_index.powi(power);
+    }
+    if sum > 0.0 { Ok(sum) } else { Err(Undefined::because(NO_SOURCE)) }
+}
+
+/// The source's luminance, cd/m².
+///
+/// # Errors
+/// It is a point: without an area there is no luminance.
+pub fn luminance(source: &GlareSource) -> Result<f64, Undefined> {
+    if source.solid_angle_sr > 0.0 || !(source.eye_lx > 0.0) {
+        Ok(source.luminance.0)
+    } else {
+        Err(Undefined::because("a point source has no luminance, for which this index asks"))
+    }
+}
+
+/// L²ω of a source, cd²·sr/m⁴.
+///
+/// # Errors
+/// As for [`luminance`].
+pub fn square(source: &GlareSource) -> Result<f64, Undefined> {
+    let luminance = luminance(source)?;
+    Ok(luminance * luminance * source.solid_angle_sr)
+}
+
+/// S2 = Σ L²ω/P², the sum of CGI, UGP and DGP; never 0.
+///
+/// # Errors
+/// As for [`positioned_sum`] and [`luminance`].
+pub fn square_sum(sight: &Sight) -> Result<f64, Undefined> {
+    positioned_sum(&sight.sources, 2, square)
+}
+
+/// A positive figure, or why an index has none.
+///
+/// # Errors
+/// `reason` if it is not positive (or no number).
+pub fn positive(value: f64, reason: &str) -> Result<f64, Undefined> {
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(Undefined::because(reason)) }
+}
+
+/// L_b, if there is one.
+///
+/// # Errors
+/// It is not positive.
+pub fn background(sight: &Sight) -> Result<f64, Undefined> {
+    positive(sight.background.0, "the background luminance is not positive")
+}
+
+/// E_v, if there is one.
+///
+/// # Errors
+/// It is not positive.
+pub fn eye_illuminance(sight: &Sight) -> Result<f64, Undefined> {
+    positive(sight.e_v_lx, "the illuminance at the eye is not positive")
+}

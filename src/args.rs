@@ -161,6 +161,10 @@ pub enum MethodChoice {
     Links,
     /// Independent path tracing, for cross-checks
     Path,
+    /// Local estimation: chains of light connected to every receiver
+    Local,
+    /// Double local estimation: local, and surfaces that are seen are connected too
+    Double,
 }
 
 /// Output formats.
@@ -248,6 +252,8 @@ impl Check {
             method: match self.method {
                 MethodChoice::Auto | MethodChoice::Links => Method::Links,
                 MethodChoice::Path => Method::Path,
+                MethodChoice::Local => Method::Local,
+                MethodChoice::Double => Method::Double,
             },
             most_blocks,
             exact_blocks: (!self.blocks.is_empty())

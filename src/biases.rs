@@ -21,7 +21,7 @@ pub(crate) fn add(
         biases.push(Bias { what: what.into(), effect, share });
     };
     let scene = &world.scene;
-    if settings.method == Method::Links && !scene.luminaires.is_empty() {
+    if settings.method != Method::Path && !scene.luminaires.is_empty() {
         note(
             "Unshadowed light of openings is integrated numerically.",
             format!("at most about {:e} of each luminaire's illuminance", crate::emitters::TOLERANCE),

@@ -333,6 +333,8 @@ impl Total {
                 method: match settings.method {
                     Method::Links => "links",
                     Method::Path => "path",
+                    Method::Local => "local",
+                    Method::Double => "double",
                 }
                 .into(),
                 blocks: self.blocks.iter().copied().max().unwrap_or(0),

@@ -107,7 +107,13 @@ fn answer_receiver(
 }
 
 /// Direct light = unshadowed light (exact) − what is kept off (sampled): no noise where nothing shades.
-fn direct(prepared: &Prepared, receiver: &Receiver, first_row: usize, rng: &mut Rng, out: &mut [f64]) {
+pub(super) fn direct(
+    prepared: &Prepared,
+    receiver: &Receiver,
+    first_row: usize,
+    rng: &mut Rng,
+    out: &mut [f64],
+) {
     let emitters = &prepared.emitters;
     let channels = prepared.scene.channels.len();
     let origin = lifted(prepared.scene, receiver.point, receiver.lift);
@@ -167,7 +173,7 @@ fn answer_ray(prepared: &Prepared, ray: &Ray, rng: &mut Rng, desk: &mut Desk, ou
 }
 
 /// Openings that a line of sight meets straight or through panes.
-fn straight_openings(prepared: &Prepared, ray: &Ray, out: &mut [f64]) {
+pub(super) fn straight_openings(prepared: &Prepared, ray: &Ray, out: &mut [f64]) {
     let emitters = &prepared.emitters;
     for luminaire in 0..prepared.scene.luminaires.len() {
         if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, ray.point, ray.direction) {
@@ -181,7 +187,7 @@ fn straight_openings(prepared: &Prepared, ray: &Ray, out: &mut [f64]) {
 }
 
 /// Openings seen by exactly one reflection in an imaged plane, which `follow` leaves to images.
-fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, share: f64, out: &mut [f64]) {
+pub(super) fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, share: f64, out: &mut [f64]) {
     let (scene, emitters) = (prepared.scene, &prepared.emitters);
     if emitters.mirrors.is_empty() {
         return;

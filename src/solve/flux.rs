@@ -54,18 +54,23 @@ struct Tally<'a> {
 }
 
 /// A luminaire, or one side of a triangle of an emitting surface.
-struct FluxSource {
-    channel: usize,
-    flux_lm: f64,
+#[derive(Debug)]
+pub(super) struct FluxSource {
+    /// Channel of the scene.
+    pub channel: usize,
+    /// Emitted flux, lm.
+    pub flux_lm: f64,
     kind: Kind,
 }
 
+#[derive(Debug)]
 enum Kind {
     Luminaire(usize),
     Triangle { index: usize, front: bool },
 }
 
-fn sources(scene: &Scene) -> Vec<FluxSource> {
+/// Everything that emits: luminaires first, then both sides of every luminous triangle.
+pub(super) fn sources(scene: &Scene) -> Vec<FluxSource> {
     let mut sources: Vec<FluxSource> = scene
         .luminaires
         .iter()
@@ -92,7 +97,8 @@ fn sources(scene: &Scene) -> Vec<FluxSource> {
 }
 
 impl FluxSource {
-    fn start(&self, scene: &Scene, place: [f64; 2], u: [f64; 3]) -> (DVec3, DVec3) {
+    /// A particle's start and direction from uniform numbers, distributed as the light is.
+    pub(super) fn start(&self, scene: &Scene, place: [f64; 2], u: [f64; 3]) -> (DVec3, DVec3) {
         let lift = scene.tracer.offset_m();
         match self.kind {
             Kind::Luminaire(index) => {
@@ -113,8 +119,19 @@ impl FluxSource {
         }
     }
 
+    /// Triangle and unit normal of the luminous side; `None` for a luminaire.
+    pub(super) fn surface(&self, scene: &Scene) -> Option<(u32, DVec3)> {
+        match self.kind {
+            Kind::Luminaire(_) => None,
+            Kind::Triangle { index, front } => {
+                let face = scene.mesh.normal_and_area(index).0;
+                Some((index as u32, if front { face } else { -face }))
+            }
+        }
+    }
+
     /// Surfaces to which the source itself is blind, and whether it is a point.
-    fn body<'s>(&self, scene: &'s Scene) -> (&'s [u32], bool) {
+    pub(super) fn body<'s>(&self, scene: &'s Scene) -> (&'s [u32], bool) {
         match self.kind {
             Kind::Luminaire(index) => {
                 let lamp = &scene.luminaires[index];

@@ -2,7 +2,10 @@
 //! replicate of everything a [`Demand`] asks. It knows no norm, no observer and no report.
 
 mod answer;
+mod chains;
+mod double;
 mod flux;
+mod local;
 mod look;
 mod path;
 mod prepare;
@@ -13,6 +16,8 @@ use crate::emitters::{Emitters, unshadowed};
 use crate::field::LuminanceField;
 use crate::query::Demand;
 use crate::scene::Scene;
+
+pub use local::{LocalEffort, LocalKernel, SeenForm};
 
 /// Number of parts in which a sheet keeps every answer.
 pub const PARTS: usize = 3;
@@ -36,6 +41,10 @@ pub enum Method {
     Links,
     /// Independent path tracing; shares only scene and tracer with `Links`.
     Path,
+    /// Local estimation: chains of light, every vertex connected to every receiver.
+    Local,
+    /// Double local estimation: as `Local`, and what lines of sight meet is connected as well.
+    Double,
 }
 
 /// Effort of one block; any values give unbiased answers, they trade noise against time.
@@ -59,6 +68,8 @@ pub struct Effort {
     pub particles: u32,
     /// Paths per receiver and block of the path tracer.
     pub paths: u32,
+    /// Of the methods `Local` and `Double`.
+    pub local: LocalEffort,
 }
 
 impl Default for Effort {
@@ -73,6 +84,7 @@ impl Default for Effort {
             opening_points: 1,
             particles: 1024,
             paths: 16,
+            local: LocalEffort::default(),
         }
     }
 }
@@ -87,6 +99,10 @@ pub struct Prepared<'s> {
     seed: u64,
     /// The stored field; empty for the path tracer.
     field: Option<LuminanceField>,
+    /// What chains start from; only for local estimation.
+    origins: Option<chains::Origins>,
+    /// Largest G = cos θ cos θ′/d² of a connection, 1/m²; the rest is made up for.
+    bound_m2: f64,
     /// Per row and source: unshadowed illuminance, lx.
     unshadowed: Vec<Vec<f64>>,
     /// First row of each receiver.
@@ -157,11 +173,15 @@ pub fn prepare<'s>(
     let emitters = Emitters::new(scene);
     let field = match method {
         Method::Links => Some(prepare::field(&emitters, &effort, seed)),
-        Method::Path => None,
+        Method::Path | Method::Local | Method::Double => None,
     };
     let unshadowed = match method {
-        Method::Links => unshadowed_rows(&emitters, demand),
+        Method::Links | Method::Local | Method::Double => unshadowed_rows(&emitters, demand),
         Method::Path => Vec::new(),
+    };
+    let origins = match method {
+        Method::Local | Method::Double => Some(chains::Origins::new(scene)),
+        Method::Links | Method::Path => None,
     };
     Prepared {
         scene,
@@ -171,6 +191,8 @@ pub fn prepare<'s>(
         method,
         seed,
         field,
+        origins,
+        bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,
         first_rows: demand.first_rows(),
     }
@@ -181,6 +203,7 @@ pub fn answer(prepared: &Prepared, block: u64) -> Sheet {
     let mut sheet = match prepared.method {
         Method::Links => answer::block(prepared, block + 1),
         Method::Path => path::block(prepared, block + 1),
+        Method::Local | Method::Double => local::block(prepared, block + 1),
     };
     if prepared.demand.flux {
         sheet.flux = Some(flux::block(prepared, block + 1, &mut sheet.counts));

@@ -3,6 +3,7 @@
 
 mod answer;
 mod flux;
+mod lobe;
 mod look;
 mod path;
 mod prepare;

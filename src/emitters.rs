@@ -11,7 +11,7 @@ mod seen;
 
 use glam::{DMat3, DVec3};
 
-use crate::geometry::trace::Tracer;
+use crate::geometry::trace::{Hit, Tracer};
 use crate::luminaire::Luminaire;
 use crate::photometry::Opening;
 use crate::scene::Scene;
@@ -230,6 +230,27 @@ impl<'s> Emitters<'s> {
         let intensity_cd = distribution.intensity_along(-d) * source.dim;
         let normal_lx = intensity_cd / (distance_m * distance_m);
         Some((intensity_cd / (source.area_m2 * d.z.abs()), Arrival { direction, distance_m, normal_lx }))
+    }
+
+    /// Share of the light of an opening at `distance_m` that reaches the origin of a ray which meets
+    /// `hit` first: a luminaire's own body does not hide it.
+    pub fn uncovered(
+        &self,
+        luminaire: usize,
+        (origin, direction): (DVec3, DVec3),
+        distance_m: f64,
+        hit: Option<&Hit>,
+    ) -> f64 {
+        let tracer = &self.scene.tracer;
+        // The opening may lie *in* the surface that ends the ray.
+        let reach = distance_m - 2.0 * tracer.offset_m();
+        let Some(hit) = hit.filter(|hit| hit.distance_m <= reach) else { return 1.0 };
+        let body = &self.scene.luminaires[luminaire].body;
+        if body.contains(&tracer.surface(hit.triangle)) {
+            tracer.transmittance(origin, direction, reach, body)
+        } else {
+            0.0
+        }
     }
 
     /// Density in 1/sr, seen from the receiving point, with which [`Emitters::arrival`] draws the

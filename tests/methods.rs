@@ -130,17 +130,26 @@ fn methods_agree_in_a_room_with_mirror_pane_and_opal() {
     agree("furnished", &scene, &brighter(&scene), &furnished_demand());
 }
 
-#[test]
-fn methods_agree_among_glossy_surfaces() {
-    let (scene, twin) = (glossy_room([1.0, 1.0]), glossy_room([1.02, 1.0]));
+fn glossy_demand() -> Demand {
     let targets = [
-        DVec3::new(0.01, 1.7, 1.2),  // the mirror
+        DVec3::new(0.01, 1.7, 1.2),  // the mirror, if there is one
         DVec3::new(2.8, 1.4, 0.74),  // the sharp desk
         DVec3::new(3.05, 1.6, 0.0),  // the floor where it reflects a downlight
         DVec3::new(3.05, 4.0, 1.75), // the wall of the paper's lobe
     ];
-    let demand = demand(DVec3::new(6.0, 4.0, 2.8), DVec3::new(3.2, 0.6, 1.2), targets);
-    agree("glossy", &scene, &twin, &demand);
+    demand(DVec3::new(6.0, 4.0, 2.8), DVec3::new(3.2, 0.6, 1.2), targets)
+}
+
+#[test]
+fn methods_agree_on_glossy_surfaces_under_downlights() {
+    let (scene, twin) = (glossy_room([1.0, 1.0], true), glossy_room([1.02, 1.0], true));
+    agree("downlights", &scene, &twin, &glossy_demand());
+}
+
+#[test]
+fn methods_agree_on_glossy_surfaces_beside_a_mirror() {
+    let (scene, twin) = (glossy_room([1.0, 1.0], false), glossy_room([1.02, 1.0], false));
+    agree("glossy and mirror", &scene, &twin, &glossy_demand());
 }
 
 #[test]

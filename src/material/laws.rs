@@ -82,7 +82,10 @@ fn laws_of_every_model() {
                 bsdf.sample(wo, u).is_some_and(|s| !s.specular)
             });
             let drawn = drawn.count() as f64 / 4096.0;
-            assert!((density - drawn).abs() < 4e-3, "{bsdf:?}: pdf at {cos_o} integrates to {density}, not {drawn}");
+            assert!(
+                (density - drawn).abs() < 4e-3,
+                "{bsdf:?}: pdf at {cos_o} integrates to {density}, not {drawn}"
+            );
         }
     }
 }
@@ -124,13 +127,13 @@ fn chi_squared(drawn: &Bsdf, claimed: &Bsdf, wo: DVec3, seed: u64) -> f64 {
         counts[(below * rings + ring) * sectors + sector] += 1;
     }
     let mut expected = vec![0.0; counts.len()];
-    for bin in 0..both * rings * sectors {
+    for (bin, expected) in expected.iter_mut().enumerate().take(both * rings * sectors) {
         let (row, sector) = (bin / sectors, bin % sectors);
         let (sign, ring) = if row < rings { (1.0, row) } else { (-1.0, row - rings) };
         for k in 0..fine * fine {
             let at = |i: usize, of: usize, n: usize| (of as f64 + (i as f64 + 0.5) / fine as f64) / n as f64;
             let wi = direction(sign * at(k % fine, ring, rings), 2.0 * PI * at(k / fine, sector, sectors));
-            expected[bin] += claimed.pdf(wi, wo) * 2.0 * PI / (rings * sectors * fine * fine) as f64;
+            *expected += claimed.pdf(wi, wo) * 2.0 * PI / (rings * sectors * fine * fine) as f64;
         }
     }
     let any: f64 = expected.iter().sum();

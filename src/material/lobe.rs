@@ -80,13 +80,13 @@ impl Lobe {
 }
 
 /// Intervals of the table of albedos.
-const INTERVALS: usize = 32;
+const INTERVALS: usize = 24;
 /// Points of a Fibonacci lattice from which an entry is averaged, and its generator.
 const LATTICE: [u32; 2] = [10_946, 6_765];
 /// The first entry stands for grazing incidence.
 const GRAZING: f64 = 1e-6;
 
-/// Albedo against cos θ, at cos θ = (k/32)²: dense near grazing, where it changes fast.
+/// Albedo against cos θ, at cos θ = (k/24)²: dense near grazing, where it changes fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Albedo([f64; INTERVALS + 1]);
 

@@ -200,11 +200,10 @@ fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, share: f64, 
         let hit = scene.tracer.closest(origin, direction, &[]);
         if reflections == 1 {
             for luminaire in 0..scene.luminaires.len() {
-                if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
-                    && distance_m - 2.0 * scene.tracer.offset_m()
-                        < hit.map_or(f64::INFINITY, |hit| hit.distance_m)
-                {
-                    out[scene.channel_of[luminaire] * PARTS + Part::Image as usize] += luminance * share;
+                if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction) {
+                    let passed = emitters.uncovered(luminaire, (origin, direction), distance_m, hit.as_ref());
+                    out[scene.channel_of[luminaire] * PARTS + Part::Image as usize] +=
+                        luminance * passed * share;
                 }
             }
         }

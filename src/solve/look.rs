@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::Counts;
 use super::lobe::scatter;
 use crate::emitters::{Arrival, Emitters};
+use crate::geometry::trace::Hit;
 use crate::rng::Rng;
 use crate::scene::{Channel, Scene};
 
@@ -106,8 +107,7 @@ fn follow(
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if !owned {
-            let reach_m = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
-            add_openings(emitters, origin, direction, reach_m, weight, met);
+            add_openings(emitters, (origin, direction), hit.as_ref(), weight, met);
         }
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -145,21 +145,12 @@ fn follow(
     None
 }
 
-/// Adds the luminance of every opening along a ray before `reach_m`.
-fn add_openings(
-    emitters: &Emitters,
-    origin: DVec3,
-    direction: DVec3,
-    reach_m: f64,
-    weight: f64,
-    met: &mut [f64],
-) {
+/// Adds the luminance of every opening along a ray before what it meets.
+fn add_openings(emitters: &Emitters, ray: (DVec3, DVec3), hit: Option<&Hit>, weight: f64, met: &mut [f64]) {
     for luminaire in 0..emitters.scene.luminaires.len() {
-        if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
-            && distance_m - 2.0 * emitters.scene.tracer.offset_m() < reach_m
-        {
-            // The opening may lie *in* the surface that ends the ray.
-            met[emitters.scene.channel_of[luminaire]] += weight * luminance;
+        if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, ray.0, ray.1) {
+            met[emitters.scene.channel_of[luminaire]] +=
+                weight * luminance * emitters.uncovered(luminaire, ray, distance_m, hit);
         }
     }
 }

@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use super::{Counts, PARTS, Part, Prepared, Sheet, lifted};
+use crate::geometry::trace::Hit;
 use crate::query::{Kernel, Ray};
 use crate::rng::Rng;
 use crate::scene::{Channel, Scene};
@@ -92,14 +93,7 @@ fn one_lamp(scene: &Scene, rng: &mut Rng, origin_towards: impl Fn(DVec3) -> DVec
 
 /// Luminance of the luminaires that a ray from a glossy surface meets straight or through panes,
 /// shared with [`one_lamp`], which finds the same light: the density of each over the sum of both.
-fn glossy_lamps(
-    scene: &Scene,
-    origin: DVec3,
-    direction: DVec3,
-    density: f64,
-    weight: f64,
-    out: &mut [f64],
-) {
+fn glossy_lamps(scene: &Scene, origin: DVec3, direction: DVec3, density: f64, weight: f64, out: &mut [f64]) {
     let count = scene.luminaires.len() as f64;
     for (index, lamp) in scene.luminaires.iter().enumerate() {
         let area_m2 = lamp.kind.opening.area_m2();
@@ -137,13 +131,12 @@ fn trace(
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if sees_lamps {
-            let reach = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
             let part = match (diffuse_seen, reflected_once) {
                 (false, false) => Part::Direct,
                 (false, true) => Part::Image,
                 (true, _) => Part::Indirect,
             };
-            add_lamps(scene, origin, direction, reach, weight, part, out);
+            add_lamps(scene, origin, direction, hit.as_ref(), weight, part, out);
         }
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -164,7 +157,9 @@ fn trace(
             if let Some(lit) = one_lamp(scene, rng, side) {
                 let local = frame.transpose() * lit.direction;
                 let share = match bsdf.lobe() {
-                    Some(_) if lit.density.is_finite() => lit.density / (lit.density + bsdf.pdf(local, to_eye)),
+                    Some(_) if lit.density.is_finite() => {
+                        lit.density / (lit.density + bsdf.pdf(local, to_eye))
+                    }
                     _ => 1.0,
                 };
                 let value = bsdf.f(local, to_eye) * local.z.abs() * lit.lx * weight * share;
@@ -198,7 +193,7 @@ fn add_lamps(
     scene: &Scene,
     origin: DVec3,
     direction: DVec3,
-    reach: f64,
+    hit: Option<&Hit>,
     weight: f64,
     part: Part,
     out: &mut [f64],
@@ -208,12 +203,19 @@ fn add_lamps(
         let into = lamp.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - lamp.position), into * direction);
         let t = -o.z / d.z;
-        // The opening may lie *in* the surface that ends the ray.
-        let before = t - 2.0 * scene.tracer.offset_m() < reach;
-        if area_m2 > 0.0 && t > 0.0 && before && lamp.kind.opening.contains(o + d * t) {
+        if area_m2 > 0.0 && t > 0.0 && lamp.kind.opening.contains(o + d * t) {
+            // The opening may lie *in* the surface that ends the ray; its own body does not hide it.
+            let reach = t - 2.0 * scene.tracer.offset_m();
+            let passed = match hit {
+                Some(hit) if hit.distance_m < reach => {
+                    let own = lamp.body.contains(&scene.tracer.surface(hit.triangle));
+                    if own { scene.tracer.transmittance(origin, direction, reach, &lamp.body) } else { 0.0 }
+                }
+                _ => 1.0,
+            };
             let intensity_cd = lamp.kind.distribution.intensity_along(-d) * lamp.dim;
             out[scene.channel_of[index] * PARTS + part as usize] +=
-                weight * intensity_cd / (area_m2 * d.z.abs());
+                weight * intensity_cd / (area_m2 * d.z.abs()) * passed;
         }
     }
 }

@@ -25,6 +25,7 @@ struct Entry {
 
 /// What [`Palette::find`] found.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, while a project is read")]
 pub enum Lookup {
     /// No such entry.
     Absent,
@@ -231,7 +232,8 @@ fn lobe(section: &MaterialSection, context: &mut Context) -> Option<Lobe> {
     if !(low..=high).contains(&value) {
         let message = format!("{what} must lie in {low} … {high}, found {value}");
         let sharp = if ward.is_some() { value < low } else { value > high };
-        let hint = if sharp { "a sharper surface is { mirror = … }" } else { "a duller surface is diffuse" };
+        let hint =
+            if sharp { "a sharper surface is { mirror = … }" } else { "a duller surface is diffuse" };
         context.error(&shape.span(), message, hint);
         return None;
     }

@@ -12,9 +12,9 @@ mod seen;
 
 use glam::{DMat3, DVec3};
 
-use crate::geometry::trace::Tracer;
+use crate::geometry::trace::{Hit, Tracer};
 use crate::luminaire::Luminaire;
-use crate::photometry::{Opening, Shine};
+use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, unshadowed};
@@ -65,6 +65,8 @@ pub struct Arrival {
     /// I(C,γ)/d² in lx on a surface that faces the source, panes and mirrors not yet taken off; the
     /// weight of the point ([`Shine`]) is in it.
     pub normal_lx: f64,
+    /// That weight.
+    pub weight: f64,
 }
 
 impl Source {
@@ -137,6 +139,7 @@ impl<'s> Emitters<'s> {
             direction: (source.position - point).normalize_or_zero(),
             distance_m: source.position.distance(point),
             normal_lx: 0.0,
+            weight: 1.0,
         })
     }
 
@@ -189,6 +192,7 @@ impl<'s> Emitters<'s> {
             direction,
             distance_m,
             normal_lx: shine.weight * intensity_cd / distance_squared,
+            weight: shine.weight,
         })
     }
 
@@ -239,11 +243,48 @@ impl<'s> Emitters<'s> {
     ///
     /// L = I(C,γ)/A_p(C,γ): the same light that [`Emitters::arrival`] integrates.
     pub fn opening_along(&self, luminaire: usize, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
-        let entry = &self.scene.luminaires[luminaire];
-        let into = entry.world_from_luminaire.transpose();
-        let (o, d) = (into * (origin - entry.position), into * direction);
-        let (distance_m, projected_m2) = entry.kind.opening.along(o, d)?;
-        let intensity_cd = entry.kind.distribution.intensity_along(-d) * entry.dim;
-        Some((intensity_cd / projected_m2, distance_m))
+        let (luminance, arrival) = self.along(&self.sources[luminaire], origin, direction)?;
+        Some((luminance, arrival.distance_m))
+    }
+
+    /// [`Emitters::opening_along`] of a luminaire or an image, as if nothing stood between.
+    #[inline]
+    pub fn along(&self, source: &Source, origin: DVec3, direction: DVec3) -> Option<(f64, Arrival)> {
+        let into = source.world_from_luminaire.transpose();
+        let (o, d) = (into * (origin - source.position), into * direction);
+        let Met { distance_m, projected_m2, weight } = source.opening.along(o, d)?;
+        let distribution = &self.luminaire(source).kind.distribution;
+        let intensity_cd = distribution.intensity_along(-d) * source.dim;
+        let normal_lx = weight * intensity_cd / (distance_m * distance_m);
+        Some((intensity_cd / projected_m2, Arrival { direction, distance_m, normal_lx, weight }))
+    }
+
+    /// Share of the light of an opening at `distance_m` that reaches the origin of a ray which meets
+    /// `hit` first: a luminaire's own body does not hide it.
+    pub fn uncovered(
+        &self,
+        luminaire: usize,
+        (origin, direction): (DVec3, DVec3),
+        distance_m: f64,
+        hit: Option<&Hit>,
+    ) -> f64 {
+        let tracer = &self.scene.tracer;
+        // The opening may lie *in* the surface that ends the ray.
+        let reach = distance_m - 2.0 * tracer.offset_m();
+        let Some(hit) = hit.filter(|hit| hit.distance_m <= reach) else { return 1.0 };
+        let body = &self.scene.luminaires[luminaire].body;
+        if body.contains(&tracer.surface(hit.triangle)) {
+            tracer.transmittance(origin, direction, reach, body)
+        } else {
+            0.0
+        }
+    }
+
+    /// Density in 1/sr, seen from the receiving point, with which [`Emitters::arrival`] draws the
+    /// direction of an arrival: d²/(weight · A_p); infinite for points.
+    pub fn density(&self, source: &Source, arrival: &Arrival) -> f64 {
+        let leaving = source.world_from_luminaire.transpose() * -arrival.direction;
+        let projected_m2 = source.opening.seen_m2(leaving);
+        arrival.distance_m * arrival.distance_m / (arrival.weight * projected_m2)
     }
 }

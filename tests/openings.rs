@@ -85,6 +85,25 @@ fn by_rays(emitters: &Emitters, point: DVec3, kernel: &Kernel) -> f64 {
     sum
 }
 
+/// Catches: a point met by a ray that is weighted other than when it is drawn, so that light found in
+/// both ways does not add up to itself.
+#[test]
+fn a_ray_gives_a_point_the_weight_with_which_it_is_drawn() {
+    for (name, opening) in SHAPES.into_iter().filter(|(_, opening)| !opening.is_point()) {
+        let place = DVec3::new(0.9, -1.3, -1.7);
+        for k in 0..64 {
+            let u = [(f64::from(k % 8) + 0.5) / 8.0, (f64::from(k / 8) + 0.5) / 8.0];
+            let Some(shine) = opening.shine(place, u) else { continue };
+            let met = opening.along(place, (shine.at - place).normalize());
+            // A ray aimed at the very limb of a body may pass beside it.
+            let Some(met) = met.filter(|met| (met.distance_m - shine.at.distance(place)).abs() < 1e-9) else {
+                continue;
+            };
+            assert!((met.weight / shine.weight - 1.0).abs() < 1e-6, "{name}: {met:?} is not {shine:?}");
+        }
+    }
+}
+
 /// Catches: another weight for desks than for eyes, a limb counted twice, a hidden face that shines, a
 /// mantle turned by 90°, an ellipsoid sampled by its surface instead of what it shows.
 #[test]

@@ -88,8 +88,14 @@ impl Body {
         let eye = Onlooker::at(place);
         let (at, normal) = self.faces[index].visible_point(eye, u);
         let leaving = (place - at).normalize_or_zero();
-        let weight =
-            seen_m2 * normal.dot(leaving) / (normal.dot(eye.direction) * self.projected_area_m2(leaving));
+        let weight = self.weight(seen_m2, normal, place, leaving);
         (weight > 0.0 && weight.is_finite()).then_some(Shine { at, weight })
+    }
+
+    /// Weight V (n·ω) / ((n·w) A_p(ω)) of a point with normal n that sends ω to the place in direction w
+    /// from the centre, where points are drawn uniformly from the visible area V.
+    pub(super) fn weight(&self, seen_m2: f64, normal: DVec3, place: DVec3, leaving: DVec3) -> f64 {
+        let towards = place.normalize_or_zero();
+        seen_m2 * normal.dot(leaving) / (normal.dot(towards) * self.projected_area_m2(leaving))
     }
 }

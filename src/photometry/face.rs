@@ -124,6 +124,18 @@ impl Face {
         if round { at.length_squared() <= 1.0 } else { at.abs().max_element() <= 1.0 }
     }
 
+    /// Outward unit normal at a point of the piece.
+    pub(super) fn normal_at(&self, point: DVec3) -> DVec3 {
+        match *self {
+            Self::Plane { normal, .. } => normal,
+            Self::Mantle { a, b, .. } => {
+                let y = section(a, b, point);
+                (a * (y.x / a.length_squared()) + b * (y.y / b.length_squared())).normalize()
+            }
+            Self::Ellipsoid { semi } => (point / (semi * semi)).normalize(),
+        }
+    }
+
     /// Distance along a ray to where it enters the body through this piece.
     pub(super) fn entered_at(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         match *self {

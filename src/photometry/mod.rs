@@ -31,7 +31,7 @@ pub use distribution::{DistributionError, IntensityDistribution};
 pub use ies::Lm63Version;
 pub use ies_write::to_ies;
 pub use ldt_write::to_ldt;
-pub use opening::{Opening, Shine};
+pub use opening::{Met, Opening, Shine};
 pub use symmetry::Symmetry;
 
 /// What a photometric file says, checked.

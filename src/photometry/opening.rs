@@ -97,6 +97,17 @@ pub struct Shine {
     pub weight: f64,
 }
 
+/// Where a ray meets an opening.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// Distance along the ray, m.
+    pub distance_m: f64,
+    /// The projected area A_p in m² by which the intensity towards the origin is to be divided.
+    pub projected_m2: f64,
+    /// The weight that [`Opening::shine`] gives to this point when seen from the ray's origin.
+    pub weight: f64,
+}
+
 impl Opening {
     /// A rectangle facing −z.
     pub fn rect(length_m: f64, width_m: f64) -> Self {
@@ -182,6 +193,15 @@ impl Opening {
         }
     }
 
+    /// A_p in m² by which a ray along ±`direction` that meets the opening divides the intensity; 0 for a
+    /// point. Unlike [`Opening::projected_area_m2`] a flat opening is seen from both sides.
+    pub fn seen_m2(&self, direction: DVec3) -> f64 {
+        match self.plane() {
+            Some(plane) => two_sided_m2(&plane, direction),
+            None => self.projected_area_m2(direction),
+        }
+    }
+
     /// No luminous sides.
     pub fn is_flat(&self) -> bool {
         self.body().is_none()
@@ -250,19 +270,27 @@ impl Opening {
         chosen.map_or(DVec3::ZERO, |(index, u)| body.faces[index].visible_point(eye, u).0)
     }
 
-    /// Where a ray (luminaire frame, unit direction) meets the opening: distance in m, and the projected
-    /// area A_p in m² by which the intensity towards the origin is to be divided. A flat opening is met
-    /// from both sides; from within a body nothing is met.
-    pub fn along(&self, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+    /// Where a ray (luminaire frame, unit direction) meets the opening. A flat opening is met from both
+    /// sides; from within a body nothing is met.
+    pub fn along(&self, origin: DVec3, direction: DVec3) -> Option<Met> {
         if let Some(plane @ Face::Plane { normal, .. }) = self.plane() {
             let t = -origin.dot(normal) / direction.dot(normal);
             let met = t > 0.0 && t.is_finite() && plane.covers(origin + direction * t);
-            return (met && plane.plane_area_m2() > 0.0).then(|| (t, two_sided_m2(&plane, direction)));
+            let projected_m2 = two_sided_m2(&plane, direction);
+            return (met && plane.plane_area_m2() > 0.0).then_some(Met {
+                distance_m: t,
+                projected_m2,
+                weight: 1.0,
+            });
         }
         let body = self.body()?;
-        let distances = body.faces[..body.count].iter().filter_map(|face| face.entered_at(origin, direction));
-        let nearest = distances.min_by(f64::total_cmp)?;
-        Some((nearest, body.projected_area_m2(-direction)))
+        let entered = |face: &Face| face.entered_at(origin, direction).map(|t| (t, *face));
+        let entered = body.faces[..body.count].iter().filter_map(entered);
+        let (distance_m, face) = entered.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let normal = face.normal_at(origin + direction * distance_m);
+        let seen_m2: f64 = body.visible_m2(Onlooker::at(origin)).iter().sum();
+        let weight = body.weight(seen_m2, normal, origin, -direction);
+        Some(Met { distance_m, projected_m2: body.projected_area_m2(-direction), weight })
     }
 
     /// Whether the opening is exactly the polygon of [`Opening::outline`] (and emits nothing sideways).

@@ -46,6 +46,17 @@ pub enum Command {
     },
     /// Print the JSON Schema of result.json
     Schema,
+    /// Glare of luminance images: every index, and the sources that were found
+    #[command(
+        after_help = "Every index is printed with its convention; one that is not defined here says why.
+The options mean what evalglare's mean. Positions count from the lower left corner.
+
+Examples:
+  gershun glare --image view.hdr
+  gershun glare --image view.hdr --task 400,300,0.6 --check sources.svg
+  gershun glare --image *.exr --threshold 1500 --format csv > glare.csv"
+    )]
+    Glare(crate::args_glare::Glare),
     /// Photometric files: figures, faults, UGR tables
     #[command(subcommand)]
     Lamp(crate::args_lamp::Lamp),

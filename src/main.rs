@@ -3,7 +3,9 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the one place that prints")]
 
 mod args;
+mod args_glare;
 mod args_lamp;
+mod commands_glare;
 mod commands_lamp;
 
 use std::io::{IsTerminal, Write};
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
         Command::Check(check) => run_checks(&check),
         Command::New { dir } => new_project(&dir),
         Command::Schema => say(report::schema()),
+        Command::Glare(command) => commands_glare::run(&command),
         Command::Lamp(command) => commands_lamp::run(&command),
         Command::Explain { code } => commands_lamp::explain(&code),
         Command::Norm(Norm::List) => list_norms(),

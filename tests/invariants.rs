@@ -232,8 +232,10 @@ fn f32_and_obvhs_live_in_the_ray_tracer() {
 /// above: `project`'s structs lie below `plan`, `measure` and `outcome`; materials below geometry.
 const ORDER: &[&str] = &[
     "main",
+    "commands_glare",
     "commands_lamp",
     "args",
+    "args_glare",
     "args_lamp",
     "lib",
     "report",

@@ -6,13 +6,16 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 pub mod cgi;
+pub mod detect;
 pub mod dgi;
 pub mod dgp;
 pub mod discomfort;
+pub mod field;
 pub mod ggr;
 pub mod gr;
 pub mod index;
 pub mod luminances;
+pub mod of_image;
 pub mod position_index;
 pub mod propagate;
 pub mod source;

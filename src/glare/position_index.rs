@@ -133,6 +133,50 @@ pub fn levin(sigma_deg: f64, tau_deg: f64) -> f64 {
     (linear * sigma_deg + square * sigma_deg * sigma_deg).exp().min(LEVIN_CAP)
 }
 
+/// Which model of P; a result names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PositionModel {
+    /// The table of CIE 117, [`cie117_table`]; below the line of sight [`levin_iwata`].
+    Table,
+    /// [`levin_iwata`] everywhere.
+    Levin,
+}
+
+/// What a model says of a source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Position {
+    /// P.
+    Index(f64),
+    /// P from below the line of sight, where the table has none: Iwata–Osterhaus, to be noted.
+    BelowTable(f64),
+    /// The method ignores such a source.
+    Ignored,
+}
+
+impl PositionModel {
+    /// In words, for conventions.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Table => "position index CIE 117 table (Iwata–Osterhaus below the line of sight)",
+            Self::Levin => "position index Levin (Iwata–Osterhaus below the line of sight)",
+        }
+    }
+
+    /// P of a source in `direction`, seen along `gaze` with `up` upwards.
+    pub fn position(self, gaze: DVec3, up: DVec3, direction: DVec3) -> Position {
+        match self {
+            Self::Levin => Position::Index(levin_iwata(gaze, up, direction)),
+            Self::Table => match cie117_table(gaze, up, direction) {
+                Ok(index) => Position::Index(index),
+                Err(_) if direction.dot(up - gaze * up.dot(gaze)) < 0.0 => {
+                    Position::BelowTable(levin_iwata(gaze, up, direction))
+                }
+                Err(_) => Position::Ignored,
+            },
+        }
+    }
+}
+
 /// P for every direction: [`levin`] above the line of sight, Iwata and Osterhaus (2010) below it,
 /// which is Levin at τ = 90° and σ' = atan(√(x² + (1.15 z)²) / y), y along the line of sight, x
 /// sideways, z up. Behind the eye σ goes on growing and P reaches the cap. Where `up` is parallel

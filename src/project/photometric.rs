@@ -1,16 +1,19 @@
-//! Reads photometric files that are named on the command line, outside of any project.
+//! Reads photometric files and images that are named on the command line, outside of any project.
 
 use std::path::{Path, PathBuf};
 
 use super::context::SMALL_FILE;
 
+/// Largest image file, bytes: 64 million pixels of three times four bytes.
+const LARGEST_IMAGE: u64 = 768 << 20;
+
 /// Why a named file could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// A folder was named.
-    #[error("{0} is a folder\n  hint: name its files, for example {0}/*.ldt or {0}/*.ies")]
-    Folder(PathBuf),
-    /// Larger than any photometric file.
+    #[error("{0} is a folder\n  hint: name its files, for example {0}/*.{1} or {0}/*.{2}")]
+    Folder(PathBuf, &'static str, &'static str),
+    /// Larger than any file of its kind.
     #[error("{path} has {mib} MiB, more than the limit of {limit_mib} MiB")]
     Large {
         /// The file.
@@ -40,13 +43,25 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
 /// # Errors
 /// A folder, a file that is too large, or one that cannot be read.
 pub fn read_photometry(path: &Path) -> Result<Vec<u8>, ReadError> {
+    read_named(path, SMALL_FILE, ["ldt", "ies"])
+}
+
+/// The bytes of a luminance image.
+///
+/// # Errors
+/// A folder, a file that is too large, or one that cannot be read.
+pub fn read_image(path: &Path) -> Result<Vec<u8>, ReadError> {
+    read_named(path, LARGEST_IMAGE, ["hdr", "exr"])
+}
+
+fn read_named(path: &Path, limit: u64, [one, other]: [&'static str; 2]) -> Result<Vec<u8>, ReadError> {
     let io = |source| ReadError::Io { path: path.to_owned(), source };
     let metadata = path.metadata().map_err(io)?;
     if metadata.is_dir() {
-        return Err(ReadError::Folder(path.to_owned()));
+        return Err(ReadError::Folder(path.to_owned(), one, other));
     }
-    if metadata.len() > SMALL_FILE {
-        let (mib, limit_mib) = (metadata.len() >> 20, SMALL_FILE >> 20);
+    if metadata.len() > limit {
+        let (mib, limit_mib) = (metadata.len() >> 20, limit >> 20);
         return Err(ReadError::Large { path: path.to_owned(), mib, limit_mib });
     }
     std::fs::read(path).map_err(io)

@@ -6,6 +6,7 @@ mod canvas;
 pub mod csv;
 mod file;
 mod folder;
+pub mod glare;
 mod isolines;
 mod json;
 mod junit;

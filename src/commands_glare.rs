@@ -1,0 +1,146 @@
+//! Runs `gershun glare`. Images are evaluated in parallel; results keep the order in which the files
+//! were named.
+
+use std::path::Path;
+
+use gershun::glare::detect::{Search, Threshold};
+use gershun::glare::field::Cone;
+use gershun::glare::of_image::{Options, glare_of_image};
+use gershun::glare::position_index::PositionModel;
+use gershun::glare::source::{DgpForm, Given};
+use gershun::image::{LuminanceImage, ViewOptions, read};
+use gershun::project::read_image;
+use gershun::report::glare as report;
+use gershun::report::write_file;
+use gershun::units::Nits;
+use rayon::prelude::*;
+
+use crate::args_glare::{DgpChoice, Glare, GlareFormat, Peak, PositionChoice};
+use crate::{BAD_INPUT, COMPLIES, complain, say};
+
+/// Multiple of the task's luminance that is the threshold if none is given.
+const TASK_FACTOR: f64 = 5.0;
+
+pub fn run(glare: &Glare) -> u8 {
+    if glare.check.is_some() && glare.image.len() > 1 {
+        return complain("--check draws one image; name one");
+    }
+    let mask = match glare.mask.as_deref().map(|path| image(path, None)).transpose() {
+        Ok(mask) => mask,
+        Err(error) => return complain(&error),
+    };
+    let evaluate = |path: &std::path::PathBuf| -> Result<report::Evaluated, String> {
+        let image = image(path, glare.view.as_deref())?;
+        let options = options(glare, &image).map_err(|error| format!("{}: {error}", path.display()))?;
+        let found = glare_of_image(&image, mask.as_ref(), &options)
+            .map_err(|undefined| format!("{}: {undefined}{}", path.display(), hint(&image)))?;
+        Ok(report::Evaluated { file: path.display().to_string(), glare: found })
+    };
+    let (mut worst, mut evaluated) = (COMPLIES, Vec::with_capacity(glare.image.len()));
+    for result in glare.image.par_iter().map(evaluate).collect::<Vec<_>>() {
+        match result {
+            Ok(image) => evaluated.push(image),
+            Err(error) => worst = complain(&error),
+        }
+    }
+    if evaluated.is_empty() {
+        return BAD_INPUT;
+    }
+    if let (Some(path), [only]) = (&glare.check, evaluated.as_slice())
+        && let Err(error) = check(path, only)
+    {
+        return complain(&error);
+    }
+    let text = match glare.format {
+        GlareFormat::Human => Ok(report::images_text(&evaluated)),
+        GlareFormat::Json => report::images_json(&evaluated),
+        GlareFormat::Csv => report::indices_csv(&evaluated),
+    };
+    match text {
+        Ok(text) => worst.max(say(&text)),
+        Err(error) => complain(&error.to_string()),
+    }
+}
+
+/// The image of a file; `view`, if given, takes the place of what the file says.
+fn image(path: &Path, view: Option<&str>) -> Result<LuminanceImage, String> {
+    let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let bytes = read_image(path).map_err(|error| error.to_string())?;
+    let mut image = read(&bytes).map_err(|error| at(&error))?;
+    if let Some(text) = view {
+        let mut options = ViewOptions::default();
+        options.add(text).map_err(|error| format!("--view: {error}"))?;
+        image.view = Some(options.view().map_err(|error| format!("--view: {error}"))?);
+        image.notes.push("the view is that of the command line".into());
+    }
+    Ok(image)
+}
+
+fn hint(image: &LuminanceImage) -> String {
+    let notes = image.notes.iter().map(|note| format!("\n  note: {note}")).collect::<Vec<_>>().concat();
+    let view = "\n  hint: name the view, for example --view \"-vta -vv 180 -vh 180\"";
+    if image.view.is_some() { notes } else { notes + view }
+}
+
+fn options(glare: &Glare, image: &LuminanceImage) -> Result<Options, String> {
+    let task = match (glare.task, image.view) {
+        (Some([x, y, opening_rad]), Some(view)) => {
+            let place = [x, image.height as f64 - y];
+            let direction = view
+                .direction(image.size(), place)
+                .ok_or("the task's centre lies outside the image's projection")?;
+            let axes = [view.right(), view.up(), view.forward()];
+            let direction = glam::DVec3::from_array(axes.map(|axis| direction.dot(axis)));
+            Some(Cone { direction, opening_rad })
+        }
+        _ => None,
+    };
+    let threshold = match (glare.threshold, glare.threshold_factor, task) {
+        (Some(luminance), _, _) => Threshold::Absolute(Nits(luminance)),
+        (None, Some(factor), Some(task)) => Threshold::TimesTask(factor, task),
+        (None, None, Some(task)) => Threshold::TimesTask(TASK_FACTOR, task),
+        (None, Some(factor), None) => Threshold::TimesMean(factor),
+        (None, None, None) => Search::default().threshold,
+    };
+    Ok(Options {
+        search: Search {
+            threshold,
+            radius_rad: glare.search_radius,
+            peak: match glare.peak {
+                Peak::Above(luminance) => Some(Nits(luminance)),
+                Peak::None => None,
+            },
+        },
+        position: match glare.position_index {
+            PositionChoice::Levin => PositionModel::Levin,
+            PositionChoice::Table => PositionModel::Table,
+        },
+        given: Given {
+            age_years: glare.age,
+            low_light: glare.low_light,
+            dgp: match glare.dgp {
+                DgpChoice::Evalglare => DgpForm::Evalglare,
+                DgpChoice::Published => DgpForm::Published,
+            },
+            ..Given::default()
+        },
+        measured_e_v_lx: glare.measured_ev,
+        task,
+        band_rad: glare.band,
+    })
+}
+
+fn check(path: &Path, image: &report::Evaluated) -> Result<(), String> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let bytes = match extension.as_str() {
+        "png" => report::check_png(image),
+        "svg" => report::check_svg(image).into_bytes(),
+        _ => {
+            return Err(format!(
+                "{}: a check picture is .png or .svg\n  hint: name a file with one of them",
+                path.display()
+            ));
+        }
+    };
+    write_file(path, &bytes).map_err(|error| error.to_string())
+}

@@ -5,6 +5,7 @@
 // `!(x > 0.0)` is the guard that stops NaN too.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+pub mod discomfort;
 pub mod position_index;
 pub mod ugr;
 pub mod ugr_table;

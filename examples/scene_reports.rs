@@ -17,7 +17,7 @@ use gershun::report::{Lang, Options, files};
 use gershun::{Settings, Watch, run};
 
 /// Project and the folder of its report below reports/.
-pub const SCENES: [(&str, &str); 4] = [
+const SCENES: [(&str, &str); 4] = [
     ("scenes/classroom/project.toml", "classroom-sanpin"),
     ("scenes/classroom/sp-52.toml", "classroom-sp-52"),
     ("scenes/sports-hall/project.toml", "sports-hall"),
@@ -27,8 +27,11 @@ pub const SCENES: [(&str, &str); 4] = [
 /// What of a report is kept: small, and without drawings.
 const KEPT: [&str; 5] = ["check.csv", "points.csv", "viewpoints.csv", "glare_sources.csv", "result.json"];
 
+/// Name and bytes of a file.
+type Named = (String, Vec<u8>);
+
 /// Files of one scene's reference report.
-pub fn report(root: &Path, project: &str) -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error>> {
+fn report(root: &Path, project: &str) -> Result<Vec<Named>, Box<dyn Error>> {
     let project = load(&root.join(project), &LoadOptions::default())
         .map_err(|mistakes| mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
     let never = AtomicBool::new(false);

@@ -87,6 +87,16 @@ pub enum Norm {
         /// Row
         row: Option<String>,
     },
+    /// Say how a norm is applied and what its columns mean, or what one row asks for
+    #[command(after_help = "Examples:
+  gershun norm explain en-12193-2018
+  gershun norm explain sanpin-1.2.3685-21 15-board")]
+    Explain {
+        /// Name of a bundled norm, or a file
+        name: String,
+        /// Row
+        row: Option<String>,
+    },
 }
 
 /// Arguments of `check`.
@@ -135,6 +145,10 @@ pub struct Check {
     /// CSV files for Excel: semicolons and decimal commas
     #[arg(long)]
     pub csv_excel: bool,
+    /// What an undecided requirement means to a script, where none fails: exit code 1, 0, or one of
+    /// its own (3)
+    #[arg(long, value_enum, value_name = "MEANS", default_value_t = Undecided::Apart)]
+    pub undecided: Undecided,
     /// Let the project read files outside its folder
     #[arg(long)]
     pub allow_outside: bool,
@@ -189,6 +203,18 @@ pub enum Format {
     Junit,
     /// SARIF, for code scanners
     Sarif,
+}
+
+/// What undecided requirements mean to a script.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Undecided {
+    /// Exit code 1, as if they failed
+    Fail,
+    /// Exit code 0, as if they passed; requirements without a value still end with 3
+    Pass,
+    /// Exit code 3
+    #[value(name = "3")]
+    Apart,
 }
 
 /// SIMD levels.

@@ -5,14 +5,15 @@ use glam::{DVec2, DVec3};
 use crate::emitters::{Emitters, Seen};
 use crate::glare::source::NO_SOURCE;
 use crate::judge::{self, Judged};
+use crate::luminaire::LuminaireType;
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
     AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome, Value,
     Verdict, ViewpointOutcome,
 };
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
-use crate::project::{Compare, Project, Room, World};
-use crate::quantity::{Quantity, Statistic};
+use crate::project::{Compare, Declared, Project, Room, World};
+use crate::quantity::{Property, Quantity, Statistic};
 use crate::scene::Channel;
 use crate::units::Undefined;
 
@@ -52,7 +53,7 @@ pub fn ugr_tables(
         .map(|(room, planned)| {
             let mut ratios = vec![usual];
             for requirement in &planned.requirements {
-                if let Subject::UgrTable(shr) = requirement.subject
+                if let Subject::UgrTable(shr) | Subject::DiscomfortTable(shr) = requirement.subject
                     && !ratios.iter().any(|known| known.to_bits() == shr.to_bits())
                 {
                     ratios.push(shr);
@@ -96,6 +97,9 @@ impl Context<'_> {
             (None, verdict) => verdict,
         };
         let otherwise = judge(other).verdict;
+        let blocks_needed = (verdict == Verdict::Undecided)
+            .then(|| judge::blocks_needed(&gauged, planned.quantity, planned.bound, self.answers.blocks()))
+            .flatten();
         Requirement {
             standard: planned.standard.clone(),
             clause: planned.clause.clone(),
@@ -112,6 +116,8 @@ impl Context<'_> {
             verdict,
             at_the_limit,
             other_comparison: (forced.is_none() && otherwise != verdict).then_some(otherwise),
+            blocks_needed,
+            modified: planned.modified.clone(),
             verified: planned.verified.clone(),
             note,
             at_risk: Vec::new(),
@@ -136,22 +142,40 @@ impl Context<'_> {
             Subject::Viewpoint(viewpoint) => {
                 (self.worst_view(room, *viewpoint, planned.light_scene, alpha), view::CONVENTION.into(), None)
             }
+            Subject::OfTask(place, quantity, task, of) => {
+                let weights = self.weights(planned.light_scene, entry, true);
+                let areas = &self.plan.rooms[room].areas;
+                let own = area::blocks(&self.answers, &areas[*place].quantities[*quantity], &weights);
+                let task = area::blocks(&self.answers, &areas[*task].quantities[*of], &weights);
+                (area::gauge_of_task(&own, &task, alpha), "maintained".into(), None)
+            }
             Subject::UgrTable(shr) => {
-                let of_ratio = self.tables[room].iter().find(|(ratio, _)| ratio.to_bits() == shr.to_bits());
-                let value = room_ugr::worst(of_ratio.map_or(&[], |(_, table)| table));
                 let note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
+                (self.worst_table(room, *shr).map_or_else(Gauged::undefined, Gauged::exact), note, None)
+            }
+            Subject::DiscomfortTable(shr) => {
+                let note = format!("M = 10^((UGR + 4.8)/16), UGR by the table method, SHR {shr}");
+                let value = self.worst_table(room, *shr).map(crate::glare::discomfort::index_m);
                 (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
             }
             Subject::ColourRendering => {
-                let declared = entry.luminaires.iter().map(|&l| self.declared_ra(entry, l));
-                let least = declared.collect::<Option<Vec<f64>>>().filter(|all| !all.is_empty());
-                if let Some(all) = least {
-                    let least = all.into_iter().fold(f64::INFINITY, f64::min);
-                    (Gauged::exact(least), "declared, not computed".into(), Some(Verdict::Declared))
-                } else {
-                    let reason = Undefined::because("not declared for every luminaire type ([declared] ra)");
-                    (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
-                }
+                let all = entry
+                    .luminaires
+                    .iter()
+                    .map(|&l| self.declared(entry, l, |d| d.ra, |kind| kind.declared_ra));
+                declared(all, f64::min, "ra")
+            }
+            Subject::Declared(property) => {
+                let (of, key): (fn(&Declared) -> Option<f64>, _) = match property {
+                    Property::Pulsation => (|d| d.pulsation_percent, "flicker = { pulsation }"),
+                    Property::PstLm => (|d| d.pst_lm, "flicker = { pst_lm }"),
+                    Property::Svm => (|d| d.svm, "flicker = { svm }"),
+                };
+                declared(
+                    entry.luminaires.iter().map(|&l| self.declared(entry, l, of, |_| None)),
+                    f64::max,
+                    key,
+                )
             }
             Subject::Missing(reason) => (
                 Gauged::undefined(Undefined::because(reason.clone())),
@@ -161,14 +185,26 @@ impl Context<'_> {
         }
     }
 
-    /// R_a declared for a luminaire: under its type's name, under the room's, or in its file.
-    fn declared_ra(&self, room: &Room, luminaire: usize) -> Option<f64> {
-        let kind = &self.world.scene.luminaires[luminaire].kind;
+    /// The worst table value of a room at a spacing-to-height ratio.
+    fn worst_table(&self, room: usize, shr: f64) -> Result<f64, Undefined> {
+        let of_ratio = self.tables[room].iter().find(|(ratio, _)| ratio.to_bits() == shr.to_bits());
+        room_ugr::worst(of_ratio.map_or(&[], |(_, table)| table))
+    }
+
+    /// A property declared for a luminaire: under its type's name, under the room's, or in its file.
+    fn declared(
+        &self,
+        room: &Room,
+        luminaire: usize,
+        property: fn(&Declared) -> Option<f64>,
+        of_file: fn(&LuminaireType) -> Option<f64>,
+    ) -> Option<f64> {
+        let kind = &*self.world.scene.luminaires[luminaire].kind;
         let of =
-            |subject: &str| self.project.declared.iter().find(|d| d.subject == subject).and_then(|d| d.ra);
+            |subject: &str| self.project.declared.iter().find(|d| d.subject == subject).and_then(property);
         // A type that hangs with the maintenance of several rooms is called "A (room)" from the second on.
         let listed = kind.name.split_once(" (").and_then(|(listed, _)| of(listed));
-        of(&kind.name).or(listed).or_else(|| of(&room.name)).or(kind.declared_ra)
+        of(&kind.name).or(listed).or_else(|| of(&room.name)).or(of_file(kind))
     }
 
     /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
@@ -421,6 +457,20 @@ impl Context<'_> {
     }
 }
 
+/// The worst of what is declared for a room's luminaires; nothing is declared if one of them lacks it.
+fn declared(
+    of_luminaires: impl Iterator<Item = Option<f64>>,
+    worse: fn(f64, f64) -> f64,
+    key: &str,
+) -> (Gauged, String, Option<Verdict>) {
+    let all = of_luminaires.collect::<Option<Vec<f64>>>();
+    if let Some(worst) = all.and_then(|all| all.into_iter().reduce(worse)) {
+        return (Gauged::exact(worst), "declared, not computed".into(), Some(Verdict::Declared));
+    }
+    let reason = Undefined::because(format!("not declared for every luminaire type ([declared] {key})"));
+    (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
+}
+
 /// RMS over points of se/value and the relative errors of the mean within `r`.
 fn fine(blocks: &area::Blocks, r: f64) -> bool {
     let relative = |values: &[f64]| {
@@ -435,7 +485,7 @@ fn fine(blocks: &area::Blocks, r: f64) -> bool {
 }
 
 fn is_computed(subject: &Subject) -> bool {
-    matches!(subject, Subject::Area(..) | Subject::Viewpoint(_))
+    matches!(subject, Subject::Area(..) | Subject::OfTask(..) | Subject::Viewpoint(_))
 }
 
 fn luminaire(entry: &crate::luminaire::Luminaire) -> LuminaireOutcome {

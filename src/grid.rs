@@ -17,6 +17,9 @@ const SPACING_MAX_M: f64 = 10.0;
 /// A spacing this close to the luminaires' (as a share of it) counts as coincident.
 const COINCIDENCE: f64 = 0.02;
 
+/// Luminaires closer than this along a direction hang in one row, m.
+const SAME_ROW_M: f64 = 0.05;
+
 /// Deviation from the plane and from the edge that is taken for rounding, m.
 const FLAT_M: f64 = 1e-3;
 
@@ -76,6 +79,8 @@ pub enum Exclusion {
 pub enum GridRule {
     /// EN 12464-1, see [`spacing_m`].
     En,
+    /// EN 12193: p as in EN 12464-1 with d the longer side, the numbers of points odd.
+    EnSports,
     /// Spacing of at most so many metres on both edges.
     Step(f64),
     /// Columns and rows.
@@ -221,13 +226,31 @@ pub fn rectangle(
     })
 }
 
+/// Spacing of positions along a direction if they stand in regular rows; 0 where they do not, m.
+pub fn regular_spacing_m(positions: &[DVec3], direction: DVec3) -> f64 {
+    let mut along: Vec<f64> = positions.iter().map(|p| p.dot(direction)).collect();
+    along.sort_by(f64::total_cmp);
+    along.dedup_by(|a, b| (*a - *b).abs() < SAME_ROW_M);
+    let gaps: Vec<f64> = along.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;
+    let regular = gaps.iter().all(|gap| (gap - mean).abs() < COINCIDENCE * mean);
+    if regular { mean } else { 0.0 }
+}
+
 /// Grid on the polygon's bounding rectangle, whose u runs along the polygon's longest edge. Points
-/// outside, or nearer than `border_m` to an edge, are marked [`Exclusion::OutsideArea`].
+/// outside, or nearer than `border_m` to an edge, are marked [`Exclusion::OutsideArea`]. `avoid` are
+/// positions (luminaires) whose regular spacing the grid must not repeat, see [`rectangle`].
 ///
 /// # Errors
 /// Fewer than three corners, corners off the plane, crossing edges, no point left, and those of
 /// [`rectangle`].
-pub fn polygon(corners: &[DVec3], normal: DVec3, rule: GridRule, border_m: f64) -> Result<Grid, GridError> {
+pub fn polygon(
+    corners: &[DVec3],
+    normal: DVec3,
+    rule: GridRule,
+    border_m: f64,
+    avoid: &[DVec3],
+) -> Result<Grid, GridError> {
     let count = corners.len();
     if count < 3 {
         return Err(GridError::Corners { corners: count });
@@ -262,7 +285,8 @@ pub fn polygon(corners: &[DVec3], normal: DVec3, rule: GridRule, border_m: f64) 
     let low = flat.iter().copied().reduce(DVec2::min).unwrap_or_default();
     let size = flat.iter().copied().reduce(DVec2::max).unwrap_or_default() - low;
     let origin = corners[0] + u * low.x + v * low.y;
-    let mut grid = rectangle(origin, u * size.x, v * size.y, facing, rule, border_m, None)?;
+    let avoid_spacing_m = [u, v].map(|axis| regular_spacing_m(avoid, axis));
+    let mut grid = rectangle(origin, u * size.x, v * size.y, facing, rule, border_m, Some(avoid_spacing_m))?;
     for point in &mut grid.points {
         let offset = point.position - corners[0];
         let place = DVec2::new(u.dot(offset), v.dot(offset));
@@ -315,6 +339,7 @@ fn counts(
     let fitted = |step_m: f64| sides_m.map(|side| (side / step_m - 1e-9).ceil().max(1.0) as usize);
     let mut counts = match rule {
         GridRule::En => fitted(spacing_m(sides_m[0], sides_m[1])),
+        GridRule::EnSports => odd_counts(sides_m),
         GridRule::Step(step_m) if step_m > 0.0 => fitted(step_m),
         GridRule::Count(counts) if counts[0] > 0 && counts[1] > 0 => counts,
         GridRule::Step(_) | GridRule::Count(_) => return Err(GridError::Rule),
@@ -333,7 +358,8 @@ fn counts(
     for axis in 0..2 {
         let avoid_m = avoid_spacing_m.map_or(0.0, |avoid| avoid[axis]);
         if avoid_m > 0.0 && (sides_m[axis] / counts[axis] as f64 / avoid_m - 1.0).abs() < COINCIDENCE {
-            counts[axis] += 1;
+            // An odd number stays odd.
+            counts[axis] += if rule == GridRule::EnSports { 2 } else { 1 };
         }
     }
     if rule == GridRule::En {
@@ -346,6 +372,15 @@ fn counts(
         }
     }
     affordable(counts)
+}
+
+/// EN 12193: the longer side gets the odd number nearest to d/p, the other side the odd number nearest
+/// to its length over the spacing that results.
+fn odd_counts(sides_m: [f64; 2]) -> [usize; 2] {
+    let odd = |exact: f64| 2 * (0.5 * (exact - 1.0)).round().max(0.0) as usize + 1;
+    let longer_m = sides_m[0].max(sides_m[1]);
+    let count = odd(longer_m / spacing_m(longer_m, longer_m));
+    sides_m.map(|side_m| if side_m >= longer_m { count } else { odd(side_m * count as f64 / longer_m) })
 }
 
 fn unit(vector: DVec3, what: &'static str) -> Result<DVec3, GridError> {

@@ -53,14 +53,33 @@ pub fn judge(
     Judged { verdict, at_the_limit: near, margin: Some(margin) }
 }
 
+/// Blocks after which an undecided value will probably be decided: its interval narrows with the
+/// root of their number, until it lies on one side of the limit or within the indifference margin.
+/// An estimate at the noise found so far, not a promise.
+pub fn blocks_needed(gauged: &Gauged, quantity: Quantity, bound: Bound, blocks: usize) -> Option<usize> {
+    let value = *gauged.value.as_ref().ok()?;
+    let (Bound::Min(limit) | Bound::Max(limit)) = bound;
+    let distance = (value - limit).abs();
+    let indifference = if quantity == Quantity::Ugr { INDIFFERENCE_UGR } else { INDIFFERENCE * limit.abs() };
+    let half = if value < limit { gauged.hi - value } else { value - gauged.lo };
+    let enough = distance.max(indifference - distance);
+    if !(half.is_finite() && enough > 0.0) {
+        return None;
+    }
+    let needed = blocks as f64 * (half / enough).powi(2);
+    (needed.is_finite() && needed < 1e12).then(|| (needed.ceil() as usize).max(blocks + 1))
+}
+
 /// A value as norms print it, rounded half-up: illuminance to three significant figures, ratios to
 /// 0.01, UGR to 0.1.
 pub fn printed(value: f64, quantity: Quantity, statistic: Statistic) -> f64 {
     let to = |step: f64| ((value / step) + 0.5 + 1e-12).floor() * step;
-    if matches!(statistic, Statistic::U0 | Statistic::Ud) || quantity == Quantity::Modelling {
+    if statistic.is_ratio() || quantity == Quantity::Modelling {
         to(0.01)
     } else if quantity == Quantity::Ugr {
         to(0.1)
+    } else if quantity.is_single() {
+        value
     } else if value > 0.0 && value.is_finite() {
         to(10f64.powi(value.log10().floor() as i32 - 2))
     } else {
@@ -109,6 +128,18 @@ mod tests {
         let g = gauged(19.04, 19.03, 19.049);
         let of = |compare| judge(&g, Quantity::Ugr, Statistic::Value, Bound::Max(19.0), compare).verdict;
         assert_eq!((of(Compare::Exact), of(Compare::Printed)), (Verdict::Fail, Verdict::Pass));
+    }
+
+    #[test]
+    fn the_blocks_needed_grow_with_the_square_of_noise_over_distance() {
+        let needed = |value: f64, half: f64| {
+            let g = gauged(value, value - half, value + half);
+            blocks_needed(&g, Quantity::Horizontal, Bound::Min(500.0), 64)
+        };
+        assert_eq!(needed(510.0, 20.0), Some(256), "twice too wide: four times the blocks");
+        assert_eq!(needed(490.0, 20.0), Some(256), "on either side");
+        assert_eq!(needed(500.0, 25.0), Some(6400), "at the limit: the indifference of 2.5 lx decides");
+        assert_eq!(needed(500.0, f64::INFINITY), None);
     }
 
     #[test]

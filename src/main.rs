@@ -16,14 +16,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use gershun::norm::{Bound, Standard, bundled};
+use gershun::norm::{self, Standard, bundled};
 use gershun::outcome::{Outcome, Verdict};
 use gershun::project::{Project, load};
 use gershun::report::{self, Colour, Lang, Style};
 use gershun::{Progress, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm};
+use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm, Undecided};
 
 /// Exit codes of the contract with scripts.
 const COMPLIES: u8 = 0;
@@ -42,6 +42,7 @@ fn main() -> ExitCode {
         Command::Explain { code } => commands_lamp::explain(&code),
         Command::Norm(Norm::List) => list_norms(),
         Command::Norm(Norm::Show { name, row }) => show_norm(&name, row.as_deref()),
+        Command::Norm(Norm::Explain { name, row }) => explain_norm(&name, row.as_deref()),
     };
     ExitCode::from(code)
 }
@@ -157,9 +158,19 @@ fn check_one(mut project: Project, check: &Check, interrupted: &AtomicBool) -> u
     }
     match outcome.verdict() {
         Some(Verdict::Fail) => FAILS,
-        Some(Verdict::Undecided | Verdict::Undefined) => UNDECIDED,
+        Some(Verdict::Undecided | Verdict::Undefined) => match check.undecided {
+            Undecided::Fail => FAILS,
+            Undecided::Apart => UNDECIDED,
+            // A requirement without a value was not looked at, let alone nearly met.
+            Undecided::Pass if has_no_value(&outcome) => UNDECIDED,
+            Undecided::Pass => COMPLIES,
+        },
         Some(Verdict::Pass | Verdict::Declared | Verdict::NotAssessed) | None => COMPLIES,
     }
+}
+
+fn has_no_value(outcome: &Outcome) -> bool {
+    outcome.requirements.iter().any(|requirement| requirement.verdict == Verdict::Undefined)
 }
 
 /// A bar that appears once a run has taken a second.
@@ -297,45 +308,69 @@ fn list_norms() -> u8 {
     say(&text)
 }
 
-fn show_norm(name: &str, row: Option<&str>) -> u8 {
+/// A bundled norm, or a file; mistakes are told and become an exit code.
+fn read_norm(name: &str) -> Result<Standard, u8> {
     let text = match bundled().iter().find(|(id, _)| *id == name) {
         Some((_, text)) => (*text).to_owned(),
-        None => match std::fs::read_to_string(name) {
-            Ok(text) => text,
-            Err(error) => {
-                return complain(&format!(
-                    "\"{name}\" is neither a bundled norm (see `gershun norm list`) nor a file: {error}"
-                ));
-            }
+        None => std::fs::read_to_string(name).map_err(|error| {
+            complain(&format!(
+                "\"{name}\" is neither a bundled norm (see `gershun norm list`) nor a file: {error}"
+            ))
+        })?,
+    };
+    Standard::parse(&text, name).map_err(|error| {
+        eprintln!("{error}");
+        BAD_INPUT
+    })
+}
+
+fn row_of<'a>(standard: &'a Standard, name: &str, row: &str) -> Result<&'a norm::Row, u8> {
+    standard.row(row).ok_or_else(|| {
+        let known = standard.rows.iter().map(|row| row.reference.as_str());
+        let hint = gershun::project::suggestion(row, known);
+        complain(&format!("{name} has no row \"{row}\"; {hint} (`gershun norm show {name}` lists them)"))
+    })
+}
+
+fn show_norm(name: &str, row: Option<&str>) -> u8 {
+    let standard = match read_norm(name) {
+        Ok(standard) => standard,
+        Err(code) => return code,
+    };
+    let rows = match row {
+        None => standard.rows.iter().collect(),
+        Some(row) => match row_of(&standard, name, row) {
+            Ok(row) => vec![row],
+            Err(code) => return code,
         },
     };
-    let standard = match Standard::parse(&text, name) {
-        Ok(standard) => standard,
-        Err(error) => return complain(&error.to_string()),
-    };
-    let rows: Vec<_> =
-        standard.rows.iter().filter(|r| row.is_none_or(|wanted| r.reference == wanted)).collect();
-    if rows.is_empty() {
-        return complain(&format!(
-            "{name} has no row \"{}\"; `gershun norm show {name}` lists them",
-            row.unwrap_or("")
-        ));
-    }
     let mut text =
         format!("{}: {}, {}\n{}\n", standard.short, standard.title, standard.edition, standard.note);
     for entry in rows {
         text.push_str(&format!("\n{}  {}: {}\n", entry.reference, entry.area, entry.task));
         let limits = if row.is_some() { standard.requirements(entry) } else { entry.limits.clone() };
         for limit in limits {
-            let bound = match limit.bound {
-                Bound::Min(value) => format!(">= {value}"),
-                Bound::Max(value) => format!("<= {value}"),
-            };
-            let zone = limit.zone.key();
-            let quantity = format!("{} {}", limit.quantity.key(), limit.statistic.key());
-            let standing = limit.verified.key();
-            text.push_str(&format!("    {zone:<12} {quantity:<14} {bound:<9} {standing}\n"));
+            let statistic = limit.statistic.key();
+            let line =
+                norm::limit_line(limit.zone, limit.quantity, statistic, limit.bound, limit.verified.key());
+            text.push_str(&format!("    {line}\n"));
+        }
+        for unknown in &entry.unknown {
+            let quantity = format!("{} {}", unknown.quantity.key(), unknown.statistic.key());
+            text.push_str(&format!("    {:<12} {quantity:<16} unknown   not assessed\n", unknown.zone.key()));
         }
     }
     say(&text)
+}
+
+fn explain_norm(name: &str, row: Option<&str>) -> u8 {
+    let standard = match read_norm(name) {
+        Ok(standard) => standard,
+        Err(code) => return code,
+    };
+    match row.map(|row| row_of(&standard, name, row)) {
+        None => say(&norm::explain(&standard)),
+        Some(Ok(row)) => say(&norm::explain_row(&standard, row)),
+        Some(Err(code)) => code,
+    }
 }

@@ -384,12 +384,29 @@ pub struct Requirement {
     pub at_the_limit: bool,
     /// Verdict under the other comparison (exact/printed) where it differs.
     pub other_comparison: Option<Verdict>,
-    /// `two-sources`, `one-source`, `unverified`, or `project`.
+    /// Where an undecided requirement stands: blocks that would probably decide it, at the noise found
+    /// so far.
+    pub blocks_needed: Option<usize>,
+    /// Where the norm's own illuminance was raised or lowered for the context of the room.
+    pub modified: Option<Modified>,
+    /// `two-sources`, `one-source`, `unverified`, `unknown` (the value is not in the norm's file), or
+    /// `project`.
     pub verified: String,
     /// How the value came about, when that needs saying ("table method, SHR 0.25").
     pub note: String,
     /// What each modelling omission may cost of the margin, one sentence each.
     pub at_risk: Vec<String>,
+}
+
+/// A limit that stands instead of the norm's own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Modified {
+    /// The norm's own limit, lx.
+    pub required_lx: f64,
+    /// Steps along the norm's scale of illuminance; `None`: the row's value for difficult conditions.
+    pub steps: Option<i32>,
+    /// Why, in the project's words.
+    pub reason: String,
 }
 
 /// Verdict on a requirement.

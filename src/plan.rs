@@ -8,9 +8,9 @@ mod requirements;
 use glam::DVec3;
 
 use crate::grid::{Grid, GridError};
-use crate::outcome::Bound;
+use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, Place, Project, World};
-use crate::quantity::{Quantity, Statistic};
+use crate::quantity::{Property, Quantity, Statistic};
 use crate::query::{Demand, Kernel, Receiver};
 
 /// The plan of one world.
@@ -113,6 +113,8 @@ pub struct PlannedRequirement {
     pub bound: Bound,
     /// Standing of the limit.
     pub verified: String,
+    /// Where the limit stands instead of the norm's own.
+    pub modified: Option<Modified>,
 }
 
 /// Subject of a planned requirement, by index within the planned room.
@@ -124,8 +126,14 @@ pub enum Subject {
     Viewpoint(usize),
     /// The room's UGR by the table method with this spacing-to-height ratio.
     UgrTable(f64),
+    /// The same as discomfort index M.
+    DiscomfortTable(f64),
+    /// Mean of quantity `1` of area `0` over the mean of quantity `3` of its task area `2`.
+    OfTask(usize, usize, usize, usize),
     /// Declared colour rendering of the room's luminaires.
     ColourRendering,
+    /// Another declared property of the room's luminaires.
+    Declared(Property),
     /// Nothing in the project lets it be assessed; the reason.
     Missing(String),
 }

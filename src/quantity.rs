@@ -39,6 +39,34 @@ pub enum Quantity {
     Ugr,
     /// General colour rendering index R_a, 1: declared, never computed.
     ColourRendering,
+    /// Discomfort index M of older Russian norms, 1: M = 10^((UGR + 4.8)/16), from the table UGR.
+    DiscomfortIndex,
+    /// Another property of the light sources: declared, never computed.
+    Declared(Property),
+    /// What norms limit and gershun does not compute: always "not assessed".
+    NotComputed(Unmeasured),
+}
+
+/// A property that only the maker of a luminaire can state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Property {
+    /// Pulsation of the illuminance, %.
+    Pulsation,
+    /// Short-term flicker P_st^LM, 1.
+    PstLm,
+    /// Stroboscopic visibility measure, 1.
+    Svm,
+}
+
+/// A quantity of norms that has no computation here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Unmeasured {
+    /// Glare rating R_G of outdoor and sports lighting (CIE 112), 1.
+    GlareRating,
+    /// Daylight factor D, %.
+    DaylightFactor,
+    /// Daylight glare probability over the occupied time of a year, 1.
+    DaylightGlare,
 }
 
 /// How the values of an area become one number.
@@ -55,12 +83,23 @@ pub enum Statistic {
     U0,
     /// Diversity U_d = E_min / E_max.
     Ud,
+    /// Mean over the area divided by the mean of E_h over its task area (the area itself, for a task).
+    OfTask,
     /// A single value: a viewpoint's index, a room's UGR table value.
     Value,
 }
 
 impl Statistic {
-    /// The key used in files: `mean`, `min`, `max`, `U0`, `Ud`, `value`.
+    /// All of them, in the order of hints.
+    pub const ALL: [Self; 7] =
+        [Self::Mean, Self::Min, Self::Max, Self::U0, Self::Ud, Self::OfTask, Self::Value];
+
+    /// Whether it is a ratio without a unit.
+    pub fn is_ratio(self) -> bool {
+        matches!(self, Self::U0 | Self::Ud | Self::OfTask)
+    }
+
+    /// The key used in files: `mean`, `min`, `max`, `U0`, `Ud`, `mean/task`, `value`.
     pub fn key(self) -> &'static str {
         match self {
             Self::Mean => "mean",
@@ -68,15 +107,14 @@ impl Statistic {
             Self::Max => "max",
             Self::U0 => "U0",
             Self::Ud => "Ud",
+            Self::OfTask => "mean/task",
             Self::Value => "value",
         }
     }
 
     /// The statistic of a key; `None` for anything else.
     pub fn parse(key: &str) -> Option<Self> {
-        [Self::Mean, Self::Min, Self::Max, Self::U0, Self::Ud, Self::Value]
-            .into_iter()
-            .find(|statistic| statistic.key() == key)
+        Self::ALL.into_iter().find(|statistic| statistic.key() == key)
     }
 }
 
@@ -93,9 +131,56 @@ pub const SPELLINGS: &[&str] = &[
     "L@azimuth,tilt",
     "UGR",
     "R_a",
+    "M",
+    "pulsation",
+    "PstLM",
+    "SVM",
+    "GR",
+    "D",
+    "DGP",
 ];
 
+impl Property {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Pulsation, Self::PstLm, Self::Svm];
+
+    /// The spelling in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Pulsation => "pulsation",
+            Self::PstLm => "PstLM",
+            Self::Svm => "SVM",
+        }
+    }
+}
+
+impl Unmeasured {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::GlareRating, Self::DaylightFactor, Self::DaylightGlare];
+
+    /// The spelling in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::GlareRating => "GR",
+            Self::DaylightFactor => "D",
+            Self::DaylightGlare => "DGP",
+        }
+    }
+}
+
 impl Quantity {
+    /// Whether it is one number of a room or a luminaire, not a value at every point of an area.
+    pub fn is_single(self) -> bool {
+        matches!(
+            self,
+            Self::Ugr
+                | Self::ColourRendering
+                | Self::DiscomfortIndex
+                | Self::Declared(_)
+                | Self::NotComputed(_)
+        )
+    }
+
     /// Reads a spelling such as `E_h`, `E_v@90` or `L@45,-10`; `None` if it is not one of [`SPELLINGS`].
     pub fn parse(text: &str) -> Option<Self> {
         let finite = |number: &str| number.trim().parse::<f64>().ok().filter(|x| x.is_finite());
@@ -112,6 +197,13 @@ impl Quantity {
             ("modelling", None) => Some(Self::Modelling),
             ("UGR", None) => Some(Self::Ugr),
             ("R_a", None) => Some(Self::ColourRendering),
+            ("M", None) => Some(Self::DiscomfortIndex),
+            (name, None) if Property::ALL.iter().any(|property| property.key() == name) => {
+                Property::ALL.into_iter().find(|property| property.key() == name).map(Self::Declared)
+            }
+            (name, None) => {
+                Unmeasured::ALL.into_iter().find(|quantity| quantity.key() == name).map(Self::NotComputed)
+            }
             ("E_v", Some(azimuth)) => Some(Self::Vertical { azimuth_deg: finite(azimuth)? }),
             ("E_semi", Some(azimuth)) => Some(Self::Semicylindrical { azimuth_deg: finite(azimuth)? }),
             ("L", Some(angles)) => {
@@ -137,6 +229,9 @@ impl Quantity {
             Self::Luminance { azimuth_deg, tilt_deg } => format!("L@{azimuth_deg},{tilt_deg}"),
             Self::Ugr => "UGR".into(),
             Self::ColourRendering => "R_a".into(),
+            Self::DiscomfortIndex => "M".into(),
+            Self::Declared(property) => property.key().into(),
+            Self::NotComputed(quantity) => quantity.key().into(),
         }
     }
 
@@ -151,7 +246,13 @@ impl Quantity {
             | Self::Hemispherical
             | Self::Spherical => "lx",
             Self::Luminance { .. } => "cd/m²",
-            Self::Modelling | Self::Ugr | Self::ColourRendering => "1",
+            Self::Declared(Property::Pulsation) | Self::NotComputed(Unmeasured::DaylightFactor) => "%",
+            Self::Modelling
+            | Self::Ugr
+            | Self::ColourRendering
+            | Self::DiscomfortIndex
+            | Self::Declared(_)
+            | Self::NotComputed(_) => "1",
         }
     }
 }
@@ -173,6 +274,13 @@ mod tests {
             "modelling",
             "L@10,-30",
             "UGR",
+            "R_a",
+            "M",
+            "pulsation",
+            "SVM",
+            "GR",
+            "D",
+            "DGP",
         ] {
             let quantity = Quantity::parse(text).unwrap_or_else(|| panic!("{text} must parse"));
             assert_eq!(quantity.key(), text);

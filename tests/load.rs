@@ -326,7 +326,7 @@ fn bad_projects() -> Vec<Bad> {
         bad(
             "unknown standard",
             "[[area]]",
-            "[norm]\nstandard = \"en-12464-1-2012\"\n[[area]]",
+            "[norm]\nstandard = \"en-12464-1-2022\"\n[[area]]",
             &[(P, 17, "did you mean \"en-12464-1-2021\"")],
         ),
         bad(

@@ -4,6 +4,7 @@ pub(crate) mod check;
 mod furniture;
 pub(crate) mod glb;
 pub(crate) mod photometry;
+mod quadrant;
 pub(crate) mod room;
 mod solid;
 

@@ -86,7 +86,7 @@ fn a_grid_in_step_with_the_luminaires_gets_one_more_point() {
 fn a_rectangular_polygon_is_the_rectangle_and_an_l_loses_its_notch() {
     let at = |x: f64, y: f64| DVec3::new(x, y, 0.8);
     let square = [at(0.0, 0.0), at(8.0, 0.0), at(8.0, 5.0), at(0.0, 5.0)];
-    let grid = polygon(&square, DVec3::Z, GridRule::En, 0.5).unwrap();
+    let grid = polygon(&square, DVec3::Z, GridRule::En, 0.5, &[]).unwrap();
     let twin =
         rectangle(square[0], DVec3::X * 8.0, DVec3::Y * 5.0, DVec3::Z, GridRule::En, 0.5, None).unwrap();
     assert!(grid.points.iter().all(|point| point.excluded.is_none()));
@@ -97,7 +97,7 @@ fn a_rectangular_polygon_is_the_rectangle_and_an_l_loses_its_notch() {
     for (outline, normal) in
         [(l.to_vec(), DVec3::Z), (l.iter().rev().copied().collect(), DVec3::Z), (l.to_vec(), DVec3::NEG_Z)]
     {
-        let grid = polygon(&outline, normal, GridRule::Step(0.5), 0.3).unwrap();
+        let grid = polygon(&outline, normal, GridRule::Step(0.5), 0.3, &[]).unwrap();
         for point in &grid.points {
             let (x, y) = (point.position.x, point.position.y);
             // Nearer than 0.3 to the notch, whose inner corner (4, 2) is rounded.
@@ -113,21 +113,21 @@ fn polygons_that_are_none_are_refused() {
     let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
     let bow = [at(0.0, 0.0), at(4.0, 3.0), at(4.0, 0.0), at(0.0, 4.0)];
     assert_eq!(
-        polygon(&bow, DVec3::Z, GridRule::En, 0.0).unwrap_err(),
+        polygon(&bow, DVec3::Z, GridRule::En, 0.0, &[]).unwrap_err(),
         GridError::SelfIntersecting { first: 1, second: 3 }
     );
     let bent = [at(0.0, 0.0), at(4.0, 0.0), DVec3::new(4.0, 3.0, 0.2), at(0.0, 3.0)];
-    assert!(matches!(polygon(&bent, DVec3::Z, GridRule::En, 0.0), Err(GridError::NotPlanar { .. })));
+    assert!(matches!(polygon(&bent, DVec3::Z, GridRule::En, 0.0, &[]), Err(GridError::NotPlanar { .. })));
     assert_eq!(
-        polygon(&bow[..2], DVec3::Z, GridRule::En, 0.0).unwrap_err(),
+        polygon(&bow[..2], DVec3::Z, GridRule::En, 0.0, &[]).unwrap_err(),
         GridError::Corners { corners: 2 }
     );
     let line = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0)];
-    assert!(matches!(polygon(&line, DVec3::Z, GridRule::En, 0.0), Err(GridError::NoExtent { .. })));
+    assert!(matches!(polygon(&line, DVec3::Z, GridRule::En, 0.0, &[]), Err(GridError::NoExtent { .. })));
     // The largest circle inside has a radius of 1.17.
     let sliver = [at(0.0, 0.0), at(4.0, 0.0), at(0.0, 4.0)];
     assert_eq!(
-        polygon(&sliver, DVec3::Z, GridRule::Step(0.1), 1.2).unwrap_err(),
+        polygon(&sliver, DVec3::Z, GridRule::Step(0.1), 1.2, &[]).unwrap_err(),
         GridError::Empty { border_m: 1.2 }
     );
 }
@@ -140,4 +140,62 @@ fn a_list_keeps_order_and_normals() {
     let normals: Vec<DVec3> = grid.points.iter().map(|point| point.normal).collect();
     assert_eq!(normals, [DVec3::Z, DVec3::Y, DVec3::Z]);
     assert_eq!(grid.points[1].column, 1);
+}
+
+/// Catches: luminaires in rows that are taken for irregular, or scattered ones for regular.
+#[test]
+fn luminaires_in_rows_have_a_spacing_and_scattered_ones_none() {
+    let field: Vec<DVec3> = (0..12)
+        .map(|k| DVec3::new(1.0 + 1.6 * f64::from(k % 4), 0.8 + 2.4 * f64::from(k / 4), 2.8))
+        .collect();
+    assert!((regular_spacing_m(&field, DVec3::X) - 1.6).abs() < 1e-9);
+    assert!((regular_spacing_m(&field, DVec3::NEG_Y) - 2.4).abs() < 1e-9);
+    assert!(regular_spacing_m(&field, DVec3::Z).abs() < 1e-12);
+    let scattered = [DVec3::ZERO, DVec3::X, DVec3::X * 2.4];
+    assert!(regular_spacing_m(&scattered, DVec3::X).abs() < 1e-12);
+    assert!(regular_spacing_m(&[], DVec3::X).abs() < 1e-12);
+    // Through the polygon, whose axes only it knows: 8 m in 10 columns is 0.8 m.
+    let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+    let square = [at(0.0, 0.0), at(8.0, 0.0), at(8.0, 5.0), at(0.0, 5.0)];
+    let rows: Vec<DVec3> = (0..10).map(|k| at(0.4 + 0.8 * f64::from(k), 2.0)).collect();
+    let grid = polygon(&square, DVec3::Z, GridRule::En, 0.0, &rows).unwrap();
+    assert_eq!([grid.columns, grid.rows], [11, 6]);
+}
+
+/// Playing areas of EN 12193 as its tables print them: length, width, points along both.
+#[test]
+fn sports_grids_have_the_odd_numbers_of_points_of_the_tables() {
+    for (length, width, expected) in [
+        (28.0, 15.0, [13, 7]),   // basketball
+        (36.0, 18.0, [15, 7]),   // tennis
+        (105.0, 68.0, [21, 13]), // football
+    ] {
+        let grid = floor(length, width, GridRule::EnSports, 0.0).unwrap();
+        assert_eq!([grid.columns, grid.rows], expected, "{length} × {width}");
+        let turned = floor(width, length, GridRule::EnSports, 0.0).unwrap();
+        assert_eq!([turned.rows, turned.columns], expected, "turned");
+    }
+    for side in [0.4, 1.0, 5.0, 20.0, 55.0, 100.0] {
+        for other in [0.4, 1.0, 5.0, 20.0, 55.0, 100.0] {
+            let grid = floor(side, other, GridRule::EnSports, 0.0).unwrap();
+            assert!(grid.columns % 2 == 1 && grid.rows % 2 == 1, "{side} × {other}");
+        }
+    }
+    // A row of luminaires in step with the points: the count stays odd.
+    let avoid = Some([28.0 / 13.0, 0.0]);
+    let grid =
+        rectangle(DVec3::ZERO, DVec3::X * 28.0, DVec3::Y * 15.0, DVec3::Z, GridRule::EnSports, 0.0, avoid);
+    assert_eq!(grid.unwrap().columns, 15);
+}
+
+/// Least numbers of points as EN 12464-1's table has them in a luminaire maker's guide (their spacings
+/// are the rule's, rounded to one figure): the rule gives as many or up to two more.
+#[test]
+fn the_least_number_of_points_is_that_of_published_tables() {
+    for (side, least) in
+        [(0.4, 3), (0.6, 3), (1.0, 5), (2.0, 6), (5.0, 8), (10.0, 10), (25.0, 12), (50.0, 17), (100.0, 20)]
+    {
+        let grid = floor(side, side, GridRule::En, 0.0).unwrap();
+        assert!((least..=least + 2).contains(&grid.columns), "{side} m: {} and {least}", grid.columns);
+    }
 }

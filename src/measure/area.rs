@@ -90,10 +90,25 @@ pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
         Statistic::Max => extreme(blocks, alpha, -1.0),
         Statistic::U0 => uniformity(blocks, alpha),
         Statistic::Ud => diversity(blocks, alpha),
+        Statistic::OfTask => Gauged::undefined(Undefined::because("compare with a task area")),
         Statistic::Value => Gauged::undefined(Undefined::because(
             "an area has no single value: ask for its mean, min, max, U0 or Ud",
         )),
     }
+}
+
+/// Mean over an area divided by the mean over its task area, by Fieller's interval.
+pub fn gauge_of_task(own: &Blocks, task: &Blocks, alpha: f64) -> Gauged {
+    if own.values.is_empty() || task.values.is_empty() {
+        return Gauged::undefined(Undefined::because("the area has no point"));
+    }
+    let pair = Pair::from_blocks(&mean_blocks(own), &mean_blocks(task));
+    if !(pair.y > 0.0) {
+        return Gauged::undefined(Undefined::because("no light arrives on the task area: 0/0"));
+    }
+    let ratio = pair.ratio();
+    let (lo, hi) = pair.ratio_interval(alpha);
+    Gauged { value: Ok(ratio.value), se: ratio.se, lo, hi, place: None }
 }
 
 fn mean_blocks(blocks: &Blocks) -> Vec<f64> {

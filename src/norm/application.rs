@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Verified;
+use crate::quantity::Statistic;
 
 /// A value of the application rules with its standing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,6 +39,48 @@ pub enum UgrMethod {
     Observers,
 }
 
+/// Which statistic of the illuminance on a task the column `em` limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LevelOf {
+    /// The mean over the area.
+    Mean,
+    /// The smallest value of the area.
+    Min,
+}
+
+impl LevelOf {
+    /// As a statistic of an area.
+    pub fn statistic(self) -> Statistic {
+        match self {
+            Self::Mean => Statistic::Mean,
+            Self::Min => Statistic::Min,
+        }
+    }
+}
+
+/// How the points of an area are laid where the project does not say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GridChoice {
+    /// p = 0.2 · 5^(lg d) ≤ 10 m as largest spacing, EN 12464-1.
+    #[serde(rename = "en-12464-1")]
+    En12464,
+    /// The same p, its number of points rounded to odd ones, EN 12193.
+    #[serde(rename = "en-12193")]
+    En12193,
+}
+
+/// Something the norm regulates beyond its rows; it ends "not assessed" in every room.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Beyond {
+    /// Spelling of the quantity.
+    pub quantity: String,
+    /// Why it is not assessed.
+    pub reason: String,
+}
+
 /// How a value is compared with its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -64,6 +107,19 @@ pub struct Application {
     pub ugr_shr: Fact<f64>,
     /// Default comparison.
     pub comparison: Comparison,
+    /// Which statistic `em` limits.
+    pub illuminance_statistic: Fact<LevelOf>,
+    /// Rule of the grid.
+    pub grid: Fact<GridChoice>,
+    /// Why nothing of this norm can be judged yet; then every limit ends "not assessed".
+    pub not_judged: Option<String>,
+    /// Columns that the norm's tables have for every row: a row without one of them is "not
+    /// assessed" there, unless it says that the norm leaves it open (`unregulated`).
+    pub columns: Vec<String>,
+    /// What else the norm regulates.
+    pub beyond: Vec<Beyond>,
+    /// The scale along which illuminances are raised or lowered for context, lx, rising.
+    pub illuminance_scale_lx: Option<Fact<Vec<f64>>>,
     /// Height of the working plane where a row names none, m.
     pub working_plane_m: Fact<f64>,
     /// Eye height of seated people, m; also that of their cylindrical illuminance.
@@ -74,6 +130,9 @@ pub struct Application {
     pub border_m: Fact<f64>,
     /// Requirements for the strip around a task area.
     pub surrounding: Option<Surrounding>,
+    /// Least mean on the area around a task (a sport's total area) as a share of the mean that is
+    /// found on the task itself.
+    pub surrounding_of_task: Option<Fact<f64>>,
     /// Requirements for the area beyond it.
     pub background: Option<Background>,
     /// Uniformity on walls whose mean is limited.
@@ -137,11 +196,18 @@ impl Default for Application {
             ugr_method: customary(UgrMethod::Table),
             ugr_shr: customary(0.25),
             comparison: Comparison::Exact,
+            illuminance_statistic: customary(LevelOf::Mean),
+            grid: customary(GridChoice::En12464),
+            not_judged: None,
+            columns: Vec::new(),
+            beyond: Vec::new(),
+            illuminance_scale_lx: None,
             working_plane_m: customary(0.75),
             eye_height_seated_m: customary(1.2),
             eye_height_standing_m: customary(1.6),
             border_m: customary(0.5),
             surrounding: None,
+            surrounding_of_task: None,
             background: None,
             walls_u0: None,
             ceiling_u0: None,

@@ -1,31 +1,55 @@
 //! TOML → [`Standard`]. The shape is checked by serde, the values here, with their place in the file.
 
+use std::ops::Range;
+
 use toml::Spanned;
 
-use super::text::{Kind, LimitText, RowText, StandardText};
-use super::{Application, Bound, Limit, Row, Standard, Verified, Zone};
+use super::text::{COLUMNS, Column, Kind, LimitText, RowText, StandardText};
+use super::{Application, Bound, Limit, Plane, Row, Standard, Unknown, Verified};
 use crate::quantity::{Quantity, SPELLINGS, Statistic};
 
 /// All mistakes of a norm file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", .mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+#[error("{}", .mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"))]
 pub struct NormError {
     /// At least one, in the order of their discovery.
     pub mistakes: Vec<Mistake>,
 }
 
 /// One mistake and its place.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}:{line}: {what}; {hint}")]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
     /// File as given to the parser.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// The line itself.
+    pub source_line: String,
+    /// Number of characters to underline.
+    pub width: usize,
     /// What is wrong.
     pub what: String,
     /// What to do.
     pub hint: String,
+}
+
+impl std::fmt::Display for Mistake {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let number = self.line.to_string();
+        let margin = " ".repeat(number.len());
+        let indent = " ".repeat(self.column.saturating_sub(1));
+        writeln!(f, "error: {}", self.what)?;
+        writeln!(f, "{margin}--> {}:{}:{}", self.file, self.line, self.column)?;
+        writeln!(f, "{margin} |")?;
+        writeln!(f, "{number} | {}", self.source_line.replace('\t', " "))?;
+        write!(f, "{margin} | {indent}{}", "^".repeat(self.width))?;
+        if !self.hint.is_empty() {
+            write!(f, "\n{margin} = hint: {}", self.hint)?;
+        }
+        Ok(())
+    }
 }
 
 impl Kind {
@@ -35,6 +59,9 @@ impl Kind {
             Self::Fraction => (0.001, 1.0, "a uniformity or fraction lies between 0.001 and 1"),
             Self::Ugr => (5.0, 40.0, "UGR limits lie between 5 and 40"),
             Self::ColourRendering => (0.0, 100.0, "R_a lies between 0 and 100"),
+            Self::Percentage => (0.0, 100.0, "a percentage lies between 0 and 100"),
+            Self::GlareRating => (10.0, 90.0, "the glare rating lies between 10 and 90"),
+            Self::DiscomfortIndex => (1.0, 200.0, "the discomfort index M lies between 1 and 200"),
             Self::Height => (0.0, 100.0, "heights and widths lie between 0 and 100 m"),
             Self::Ratio => (0.1, 1.0, "the ratio lies between 0.1 and 1"),
         }
@@ -54,23 +81,23 @@ pub(super) fn standard(text: &str, file: &str) -> Result<Standard, NormError> {
     let parsed: StandardText = match toml::from_str(text) {
         Ok(parsed) => parsed,
         Err(error) => {
-            let offset = error.span().map_or(0, |span| span.start);
-            let what = error.message().trim().replace('\n', ", ");
-            reader.mistake(offset, what, "compare with a bundled standard, `norm show en-12464-1-2021`");
+            let span = error.span().unwrap_or(0..0);
+            let (what, hint) = plainly(error.message());
+            reader.mistake(&span, what, &hint);
             return Err(NormError { mistakes: reader.mistakes });
         }
     };
     if parsed.id.get_ref().trim().is_empty() {
-        reader.mistake(parsed.id.span().start, "the id is empty".into(), "give the standard a short name");
+        reader.mistake(&parsed.id.span(), "the id is empty".into(), "give the standard a short name");
     }
     if parsed.row.is_empty() {
-        reader.mistake(0, "the standard has no rows".into(), "add a [[row]] with ref and em");
+        reader.mistake(&(0..0), "the standard has no rows".into(), "add a [[row]] with ref and em");
     }
     let application = match parsed.application {
         Some(application) => {
-            let offset = application.span().start;
+            let span = application.span();
             let application = application.into_inner();
-            reader.check_application(&application, offset);
+            reader.check_application(&application, &span);
             application
         }
         None => Application::default(),
@@ -79,9 +106,9 @@ pub(super) fn standard(text: &str, file: &str) -> Result<Standard, NormError> {
     for row in parsed.row {
         if rows.iter().any(|earlier| earlier.reference == *row.reference.get_ref()) {
             let what = format!("the row {} is there twice", row.reference.get_ref());
-            reader.mistake(row.reference.span().start, what, "references must differ");
+            reader.mistake(&row.reference.span(), what, "references must differ");
         }
-        rows.push(reader.row(row));
+        rows.push(reader.row(row, &application));
     }
     if reader.mistakes.is_empty() {
         let StandardText { id, short, title, edition, note, .. } =
@@ -96,21 +123,42 @@ pub(super) fn standard(text: &str, file: &str) -> Result<Standard, NormError> {
 }
 
 impl Reader<'_> {
-    fn mistake(&mut self, offset: usize, what: String, hint: &str) {
-        let line = 1 + self.text.bytes().take(offset).filter(|byte| *byte == b'\n').count();
-        self.mistakes.push(Mistake { file: self.file.into(), line, what, hint: hint.into() });
+    fn mistake(&mut self, span: &Range<usize>, what: String, hint: &str) {
+        let boundary = |mut at: usize| {
+            at = at.min(self.text.len());
+            while !self.text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let (start, end) = (boundary(span.start), boundary(span.end.max(span.start)));
+        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let source_line = self.text[line_start..].lines().next().unwrap_or_default();
+        let last = end.min(line_start + source_line.len()).max(start);
+        self.mistakes.push(Mistake {
+            file: self.file.into(),
+            line: 1 + self.text[..start].matches('\n').count(),
+            column: 1 + self.text[line_start..start].chars().count(),
+            source_line: source_line.to_owned(),
+            width: self.text[start..last].chars().count().max(1),
+            what,
+            hint: hint.into(),
+        });
     }
 
     /// Notes a number outside its range; `!(inside)` stops NaN too.
-    fn check(&mut self, offset: usize, name: &str, value: f64, kind: Kind) {
+    fn check(&mut self, span: &Range<usize>, name: &str, value: f64, kind: Kind) {
         let (low, high, hint) = kind.range();
         if !(low..=high).contains(&value) {
-            self.mistake(offset, format!("{name} = {value} is out of range"), hint);
+            self.mistake(span, format!("{name} = {value} is out of range"), hint);
         }
     }
 
     /// The rules carry no places of their own: mistakes point to the section and name the key.
-    fn check_application(&mut self, rules: &Application, offset: usize) {
+    fn check_application(&mut self, rules: &Application, section: &Range<usize>) {
+        // The header alone: a section may be long.
+        let header = section.start..section.start + 1;
+        let header = &header;
         let mut numbers = vec![
             ("ugr_shr", rules.ugr_shr.value, Kind::Ratio),
             ("working_plane_m", rules.working_plane_m.value, Kind::Height),
@@ -127,7 +175,7 @@ impl Reader<'_> {
             );
             if !steps.windows(2).all(|pair| pair[0][0] > pair[1][0]) {
                 self.mistake(
-                    offset,
+                    header,
                     "surrounding.illuminance_lx does not fall".into(),
                     "begin with the brightest task",
                 );
@@ -145,39 +193,62 @@ impl Reader<'_> {
         ] {
             numbers.extend(u0.iter().map(|fact| (name, fact.value, Kind::Fraction)));
         }
+        numbers.extend(
+            rules.surrounding_of_task.iter().map(|fact| ("surrounding_of_task", fact.value, Kind::Fraction)),
+        );
+        if let Some(scale) = &rules.illuminance_scale_lx {
+            numbers.extend(scale.value.iter().map(|lx| ("illuminance_scale_lx", *lx, Kind::Illuminance)));
+            if !scale.value.windows(2).all(|pair| pair[0] < pair[1]) {
+                let what = "illuminance_scale_lx does not rise".into();
+                self.mistake(header, what, "begin with the smallest step");
+            }
+        }
         for (name, value, kind) in numbers {
-            self.check(offset, name, value, kind);
+            self.check(header, name, value, kind);
+        }
+        for name in &rules.columns {
+            if !COLUMNS.iter().any(|column| column.name == name) {
+                self.mistake(header, format!("no column {name}"), &known_columns());
+            }
+        }
+        for beyond in &rules.beyond {
+            if Quantity::parse(&beyond.quantity).is_none() {
+                let what = format!("unknown quantity {}", beyond.quantity);
+                self.mistake(header, what, &format!("known are {}", SPELLINGS.join(", ")));
+            }
         }
     }
 
     fn quantity(&mut self, text: &Spanned<String>) -> Quantity {
         Quantity::parse(text.get_ref()).unwrap_or_else(|| {
             let what = format!("unknown quantity {}", text.get_ref());
-            self.mistake(text.span().start, what, &format!("known are {}", SPELLINGS.join(", ")));
+            self.mistake(&text.span(), what, &format!("known are {}", SPELLINGS.join(", ")));
             Quantity::Horizontal
         })
     }
 
-    fn row(&mut self, text: RowText) -> Row {
-        let own = text.quantity.as_ref();
-        let own = own.map_or(Quantity::Horizontal, |quantity| self.quantity(quantity));
+    fn row(&mut self, text: RowText, rules: &Application) -> Row {
+        let plane = text.plane.unwrap_or_default();
+        let usual = match plane {
+            Plane::Horizontal => Quantity::Horizontal,
+            Plane::Vertical => Quantity::Normal,
+        };
+        let own = text.quantity.as_ref().map_or(usual, |quantity| self.quantity(quantity));
+        let level = text.statistic.unwrap_or(rules.illuminance_statistic.value).statistic();
         let mut limits = Vec::new();
         let mut present = Vec::new();
-        for column in text.filled(own) {
-            let number = *column.value.get_ref();
-            self.check(column.value.span().start, column.name, number, column.kind);
-            let bound = match column.zone {
-                Zone::Room => Bound::Max(number),
-                _ => Bound::Min(number),
-            };
+        for column in &COLUMNS {
+            let Some(value) = text.value(column.name) else { continue };
+            let number = *value.get_ref();
+            self.check(&value.span(), column.name, number, column.kind);
+            let (zone, quantity, statistic) = column.limits(own, level);
             let verified = text.standing(column.name);
-            let (zone, quantity, statistic) = (column.zone, column.quantity, column.statistic);
-            limits.push(Limit { zone, quantity, statistic, bound, verified });
+            limits.push(Limit { zone, quantity, statistic, bound: column.bound(number), verified });
             present.push(column.name);
         }
         let modified_lx = text.em_modified.as_ref().map(|value| {
             present.push("em_modified");
-            self.check(value.span().start, "em_modified", *value.get_ref(), Kind::Illuminance);
+            self.check(&value.span(), "em_modified", *value.get_ref(), Kind::Illuminance);
             (*value.get_ref(), text.standing("em_modified"))
         });
         for column in text.two_sources.iter().chain(&text.one_source) {
@@ -185,24 +256,39 @@ impl Reader<'_> {
             if !present.contains(&name.as_str()) {
                 let what = format!("{name} is called verified, but the row has no such value");
                 let hint = format!("the row has {}", present.join(", "));
-                self.mistake(column.span().start, what, &hint);
+                self.mistake(&column.span(), what, &hint);
             }
         }
+        for column in &text.unregulated {
+            let name = column.get_ref().as_str();
+            if present.contains(&name) {
+                let what = format!("{name} is called unregulated, but the row has a value");
+                self.mistake(&column.span(), what, "leave out one of the two");
+            } else if !COLUMNS.iter().any(|column| column.name == name) {
+                self.mistake(&column.span(), format!("no column {name}"), &known_columns());
+            }
+        }
+        let unknown = unknown(&text, rules, own, level);
         limits.extend(text.limit.iter().map(|limit| self.limit(limit)));
         if limits.is_empty() {
             let what = format!("the row {} limits nothing", text.reference.get_ref());
             let hint = "give it em, u0, ugr, ra or a limit";
-            self.mistake(text.reference.span().start, what, hint);
+            self.mistake(&text.reference.span(), what, hint);
         }
         if let Some(plane) = &text.plane_m {
-            self.check(plane.span().start, "plane_m", *plane.get_ref(), Kind::Height);
+            self.check(&plane.span(), "plane_m", *plane.get_ref(), Kind::Height);
         }
         Row {
             reference: text.reference.into_inner(),
             area: text.area,
             task: text.task,
+            clause: text.clause,
             verified: limits.first().map_or(Verified::Unverified, |limit| limit.verified),
             limits,
+            unknown,
+            plane,
+            plane_name: text.plane_name,
+            posture: text.posture.unwrap_or_default(),
             modified_lx,
             plane_m: text.plane_m.map(Spanned::into_inner),
             note: text.note,
@@ -214,16 +300,16 @@ impl Reader<'_> {
         let quantity = self.quantity(&text.quantity);
         let statistic = Statistic::parse(text.statistic.get_ref()).unwrap_or_else(|| {
             let what = format!("unknown statistic {}", text.statistic.get_ref());
-            self.mistake(text.statistic.span().start, what, "known are mean, min, max, U0, Ud, value");
+            let known: Vec<&str> = Statistic::ALL.into_iter().map(Statistic::key).collect();
+            self.mistake(&text.statistic.span(), what, &format!("known are {}", known.join(", ")));
             Statistic::Mean
         });
         let (value, bound) = match (&text.min, &text.max) {
             (Some(min), None) => (min, Bound::Min(*min.get_ref())),
             (None, Some(max)) => (max, Bound::Max(*max.get_ref())),
             (Some(_), Some(_)) | (None, None) => {
-                let offset = text.quantity.span().start;
                 self.mistake(
-                    offset,
+                    &text.quantity.span(),
                     "a limit needs either min or max".into(),
                     "write two limits for a range",
                 );
@@ -239,15 +325,49 @@ impl Reader<'_> {
         let number = *value.get_ref();
         if !(number >= 0.0 && number.is_finite()) {
             self.mistake(
-                value.span().start,
+                &value.span(),
                 format!("the limit {number} is out of range"),
                 "limits are positive numbers",
             );
         }
         if matches!(statistic, Statistic::U0 | Statistic::Ud) {
-            self.check(value.span().start, statistic.key(), number, Kind::Fraction);
+            self.check(&value.span(), statistic.key(), number, Kind::Fraction);
         }
         Limit { zone: text.zone, quantity, statistic, bound, verified: text.verified }
+    }
+}
+
+/// Columns that the norm has for all rows and this row neither fills nor calls unregulated.
+fn unknown(text: &RowText, rules: &Application, own: Quantity, level: Statistic) -> Vec<Unknown> {
+    let absent = |column: &&Column| {
+        rules.columns.iter().any(|name| name == column.name)
+            && text.value(column.name).is_none()
+            && !text.unregulated.iter().any(|name| name.get_ref() == column.name)
+    };
+    let unknown = COLUMNS.iter().filter(absent).map(|column| {
+        let (zone, quantity, statistic) = column.limits(own, level);
+        Unknown { column: column.name.into(), zone, quantity, statistic }
+    });
+    unknown.collect()
+}
+
+fn known_columns() -> String {
+    let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+    format!("there is: {}", names.join(", "))
+}
+
+/// serde's message in a user's words, and a hint.
+fn plainly(message: &str) -> (String, String) {
+    let message = message.trim().replace('\n', ", ");
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    match quoted[..] {
+        [wrong, ref known @ ..] if message.starts_with("unknown field") => {
+            (format!("unknown key \"{wrong}\""), format!("there is: {}", known.join(", ")))
+        }
+        [missing] if message.starts_with("missing field") => {
+            (format!("the key \"{missing}\" is missing"), String::new())
+        }
+        _ => (message, "compare with a bundled norm: gershun norm show en-12464-1-2021".into()),
     }
 }
 
@@ -264,7 +384,11 @@ mod tests {
         // Catches silently ignored misspellings, the worst a norm file can have.
         let found = mistakes("id = \"house\"\n[[row]]\nref = \"1\"\nemm = 300\n");
         assert_eq!(found[0].line, 4, "{found:?}");
-        assert!(found[0].what.contains("emm") && found[0].what.contains("em_walls"), "{found:?}");
+        assert!(found[0].what.contains("emm") && found[0].hint.contains("em_walls"), "{found:?}");
+        let shown = found[0].to_string();
+        let expected =
+            "error: unknown key \"emm\"\n --> house.toml:4:1\n  |\n4 | emm = 300\n  | ^^^\n  = hint: ";
+        assert!(shown.starts_with(expected), "{shown}");
         let found = mistakes("id = \"house\"\n[[row]]\nref = \"1\"\nem = \"300 lx\"\n");
         assert_eq!(found[0].line, 4, "{found:?}");
         let found =
@@ -284,7 +408,8 @@ mod tests {
         let lines: Vec<usize> = found.iter().map(|mistake| mistake.line).collect();
         assert_eq!(lines, [4, 5, 7, 8, 9, 11], "{found:#?}");
         let error = Standard::parse(text, "house.toml").unwrap_err().to_string();
-        assert!(error.starts_with("house.toml:4: em = -300 is out of range; an illuminance"), "{error}");
+        let expected = "error: em = -300 is out of range\n --> house.toml:4:6\n  |\n4 | em = -300\n  |      ^^^^\n  = hint: an illuminance";
+        assert!(error.starts_with(expected), "{error}");
         assert!(mistakes("id = \"\"\n").len() == 2);
     }
 

@@ -3,8 +3,8 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Application, Verified, Zone};
-use crate::quantity::{Quantity, Statistic};
+use super::{Application, Bound, LevelOf, Plane, Posture, Verified, Zone};
+use crate::quantity::{Property, Quantity, Statistic, Unmeasured};
 
 /// The file.
 #[derive(Deserialize)]
@@ -34,20 +34,35 @@ pub(super) struct RowText {
     pub(super) area: String,
     #[serde(default)]
     pub(super) task: String,
-    /// Quantity of `em` and `u0`; E_h unless the task is on another plane.
+    /// Table or clause where the row's number does not say it.
+    #[serde(default)]
+    pub(super) clause: String,
+    /// Quantity of `em` and `u0`; E_h, or E_n where the plane is vertical.
     pub(super) quantity: Option<Spanned<String>>,
+    pub(super) plane: Option<Plane>,
     pub(super) plane_m: Option<Spanned<f64>>,
+    /// As the norm writes the plane, `Г-0,8`.
+    #[serde(default)]
+    pub(super) plane_name: String,
+    pub(super) posture: Option<Posture>,
+    pub(super) statistic: Option<LevelOf>,
     pub(super) em: Option<Spanned<f64>>,
     pub(super) em_modified: Option<Spanned<f64>>,
     pub(super) u0: Option<Spanned<f64>>,
     pub(super) ugr: Option<Spanned<f64>>,
     pub(super) ra: Option<Spanned<f64>>,
+    pub(super) kp: Option<Spanned<f64>>,
+    pub(super) gr: Option<Spanned<f64>>,
+    pub(super) m: Option<Spanned<f64>>,
     pub(super) em_cylindrical: Option<Spanned<f64>>,
     pub(super) em_walls: Option<Spanned<f64>>,
     pub(super) em_ceiling: Option<Spanned<f64>>,
     /// Limits that no column expresses.
     #[serde(default)]
     pub(super) limit: Vec<LimitText>,
+    /// Columns that the norm itself leaves open for this row.
+    #[serde(default)]
+    pub(super) unregulated: Vec<Spanned<String>>,
     /// Columns seen in two sources of this edition.
     #[serde(default)]
     pub(super) two_sources: Vec<Spanned<String>>,
@@ -80,45 +95,78 @@ pub(super) enum Kind {
     Fraction,
     Ugr,
     ColourRendering,
+    Percentage,
+    GlareRating,
+    DiscomfortIndex,
     Height,
     Ratio,
 }
 
-/// The columns of a row: key, kind of number, zone, quantity (`None`: the row's own), statistic.
-#[rustfmt::skip]
-const COLUMNS: [(&str, Kind, Zone, Option<Quantity>, Statistic); 7] = [
-    ("em", Kind::Illuminance, Zone::Task, None, Statistic::Mean),
-    ("u0", Kind::Fraction, Zone::Task, None, Statistic::U0),
-    ("ugr", Kind::Ugr, Zone::Room, Some(Quantity::Ugr), Statistic::Value),
-    ("ra", Kind::ColourRendering, Zone::Declared, Some(Quantity::ColourRendering), Statistic::Value),
-    ("em_cylindrical", Kind::Illuminance, Zone::Cylindrical, Some(Quantity::Cylindrical), Statistic::Mean),
-    ("em_walls", Kind::Illuminance, Zone::Walls, Some(Quantity::Normal), Statistic::Mean),
-    ("em_ceiling", Kind::Illuminance, Zone::Ceiling, Some(Quantity::Normal), Statistic::Mean),
-];
-
-/// A column that a row fills.
-pub(super) struct Filled<'a> {
+/// A column: key, kind of number, zone, quantity (`None`: the row's own), statistic (`None`: the one
+/// that the norm limits).
+pub(super) struct Column {
     pub(super) name: &'static str,
-    pub(super) value: &'a Spanned<f64>,
     pub(super) kind: Kind,
     pub(super) zone: Zone,
-    pub(super) quantity: Quantity,
-    pub(super) statistic: Statistic,
+    quantity: Option<Quantity>,
+    statistic: Option<Statistic>,
+    is_maximum: bool,
+}
+
+const fn column(
+    name: &'static str,
+    kind: Kind,
+    zone: Zone,
+    quantity: Option<Quantity>,
+    statistic: Option<Statistic>,
+    is_maximum: bool,
+) -> Column {
+    Column { name, kind, zone, quantity, statistic, is_maximum }
+}
+
+/// All columns in the order of a row.
+#[rustfmt::skip]
+pub(super) const COLUMNS: [Column; 10] = [
+    column("em", Kind::Illuminance, Zone::Task, None, None, false),
+    column("u0", Kind::Fraction, Zone::Task, None, Some(Statistic::U0), false),
+    column("ugr", Kind::Ugr, Zone::Room, Some(Quantity::Ugr), Some(Statistic::Value), true),
+    column("m", Kind::DiscomfortIndex, Zone::Room, Some(Quantity::DiscomfortIndex), Some(Statistic::Value), true),
+    column("gr", Kind::GlareRating, Zone::Room, Some(Quantity::NotComputed(Unmeasured::GlareRating)), Some(Statistic::Value), true),
+    column("ra", Kind::ColourRendering, Zone::Declared, Some(Quantity::ColourRendering), Some(Statistic::Value), false),
+    column("kp", Kind::Percentage, Zone::Declared, Some(Quantity::Declared(Property::Pulsation)), Some(Statistic::Value), true),
+    column("em_cylindrical", Kind::Illuminance, Zone::Cylindrical, Some(Quantity::Cylindrical), Some(Statistic::Mean), false),
+    column("em_walls", Kind::Illuminance, Zone::Walls, Some(Quantity::Normal), Some(Statistic::Mean), false),
+    column("em_ceiling", Kind::Illuminance, Zone::Ceiling, Some(Quantity::Normal), Some(Statistic::Mean), false),
+];
+
+impl Column {
+    /// What the column limits in a row of this quantity and level.
+    pub(super) fn limits(&self, own: Quantity, level: Statistic) -> (Zone, Quantity, Statistic) {
+        (self.zone, self.quantity.unwrap_or(own), self.statistic.unwrap_or(level))
+    }
+
+    /// A number as the bound it is.
+    pub(super) fn bound(&self, number: f64) -> Bound {
+        if self.is_maximum { Bound::Max(number) } else { Bound::Min(number) }
+    }
 }
 
 impl RowText {
-    /// The columns with a value; `own` is the quantity of the row's task.
-    pub(super) fn filled(&self, own: Quantity) -> Vec<Filled<'_>> {
-        let values =
-            [&self.em, &self.u0, &self.ugr, &self.ra, &self.em_cylindrical, &self.em_walls, &self.em_ceiling];
-        let mut filled = Vec::new();
-        for ((name, kind, zone, quantity, statistic), value) in COLUMNS.into_iter().zip(values) {
-            if let Some(value) = value {
-                let quantity = quantity.unwrap_or(own);
-                filled.push(Filled { name, value, kind, zone, quantity, statistic });
-            }
+    /// The value of a column, if the row fills it.
+    pub(super) fn value(&self, name: &str) -> Option<&Spanned<f64>> {
+        match name {
+            "em" => self.em.as_ref(),
+            "u0" => self.u0.as_ref(),
+            "ugr" => self.ugr.as_ref(),
+            "m" => self.m.as_ref(),
+            "gr" => self.gr.as_ref(),
+            "ra" => self.ra.as_ref(),
+            "kp" => self.kp.as_ref(),
+            "em_cylindrical" => self.em_cylindrical.as_ref(),
+            "em_walls" => self.em_walls.as_ref(),
+            "em_ceiling" => self.em_ceiling.as_ref(),
+            _ => None,
         }
-        filled
     }
 
     /// Standing of a column: what no list names is unverified.

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{Plan, PlanError, PlannedArea, PlannedQuantity, Rows};
 use crate::geometry::trace::Hit;
 use crate::grid::{self, Exclusion, Grid, GridRule};
+use crate::norm::{GridChoice, Plane, Zone};
 use crate::project::{AreaKind, AreaShape, AreaSpec, CustomSubject, Project, Room, World};
 use crate::quantity::Quantity;
 use crate::query::{Kernel, Ray, Receiver};
@@ -30,6 +31,11 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
             }
             specs.extend(own);
         }
+    }
+    let sports =
+        project.norm.as_ref().is_some_and(|norm| norm.standard.application.grid.value == GridChoice::En12193);
+    for spec in specs.iter_mut().filter(|spec| sports && spec.rule == GridRule::En) {
+        spec.rule = GridRule::EnSports;
     }
     for (index, spec) in specs.iter().enumerate() {
         let mut grid = match lay(spec, &world.rooms[spec.room], &world.scene) {
@@ -79,7 +85,8 @@ fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: usize) -> Ve
     let Some(norm) = &project.norm else { return Vec::new() };
     let Some(reference) = room.row.as_ref().or(norm.row.as_ref()) else { return Vec::new() };
     let Some(row) = norm.standard.row(reference) else { return Vec::new() };
-    let application = &norm.standard.application;
+    let standard = &norm.standard;
+    let application = &standard.application;
     let plane_m = row.plane_m.unwrap_or(application.working_plane_m.value);
     let flat = |height_m: f64| -> Vec<DVec3> {
         room.footprint.iter().map(|p| DVec3::new(p.x, p.y, room.floor_m + height_m)).collect()
@@ -99,21 +106,26 @@ fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: usize) -> Ve
     };
     let narrow = narrowest(&room.footprint);
     let border_m = if narrow > 3.0 * application.border_m.value { application.border_m.value } else { 0.0 };
-    let mut areas = vec![
-        spec("working plane", AreaKind::Task, AreaShape::Polygon(flat(plane_m)), border_m),
-        spec(
-            "volume",
-            AreaKind::Volume,
-            AreaShape::Polygon(flat(application.eye_height_seated_m.value)),
-            border_m,
-        ),
-        spec(
-            "ceiling",
-            AreaKind::Surface,
-            AreaShape::Polygon(flat(room.height_m).into_iter().rev().collect()),
-            0.0,
-        ),
-    ];
+    let mut areas = Vec::new();
+    // A vertical plane lies where the board or the rack is: nobody can make it from the outline.
+    if row.plane == Plane::Horizontal {
+        let plane = AreaShape::Polygon(flat(plane_m));
+        areas.push(spec("working plane", AreaKind::Task, plane, border_m));
+    }
+    if standard.regulates(Zone::Cylindrical) {
+        let heights = application.eye_heights_m(row.posture);
+        for height_m in &heights {
+            let name = if heights.len() > 1 { format!("volume {height_m} m") } else { "volume".to_owned() };
+            areas.push(spec(&name, AreaKind::Volume, AreaShape::Polygon(flat(*height_m)), border_m));
+        }
+    }
+    if standard.regulates(Zone::Ceiling) {
+        let ceiling = AreaShape::Polygon(flat(room.height_m).into_iter().rev().collect());
+        areas.push(spec("ceiling", AreaKind::Surface, ceiling, 0.0));
+    }
+    if !standard.regulates(Zone::Walls) {
+        return areas;
+    }
     let count = room.footprint.len();
     let names = wall_names(scene, room);
     for (number, &a) in room.footprint.iter().enumerate() {
@@ -164,14 +176,32 @@ fn narrowest(footprint: &[DVec2]) -> f64 {
 }
 
 fn lay(spec: &AreaSpec, room: &Room, scene: &Scene) -> Result<Grid, grid::GridError> {
-    let avoid = None;
+    // The grid of a plane must not repeat the pattern of the luminaires above it.
+    let lights: Vec<DVec3> = room.luminaires.iter().map(|&l| scene.luminaires[l].position).collect();
+    let spacing = |axis: DVec3| grid::regular_spacing_m(&lights, axis.normalize_or_zero());
     match &spec.shape {
         AreaShape::Rect { origin, u, v } => {
-            let grid = grid::rectangle(*origin, *u, *v, u.cross(*v), spec.rule, spec.border_m, avoid)?;
+            let grid = grid::rectangle(
+                *origin,
+                *u,
+                *v,
+                u.cross(*v),
+                spec.rule,
+                spec.border_m,
+                Some([spacing(*u), spacing(*v)]),
+            )?;
             Ok(if spec.kind == AreaKind::Surface { snapped(grid, scene) } else { grid })
         }
         AreaShape::Surface { origin, u, v, surface } => {
-            let mut grid = grid::rectangle(*origin, *u, *v, u.cross(*v), spec.rule, spec.border_m, avoid)?;
+            let mut grid = grid::rectangle(
+                *origin,
+                *u,
+                *v,
+                u.cross(*v),
+                spec.rule,
+                spec.border_m,
+                Some([spacing(*u), spacing(*v)]),
+            )?;
             for point in &mut grid.points {
                 if !on_surface(scene, *surface, point.position) {
                     point.excluded = Some(Exclusion::OutsideArea);
@@ -186,7 +216,7 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene) -> Result<Grid, grid::GridEr
                 && normal.z < -0.99
                 && corners.iter().all(|p| (p.z - top).abs() < SNAP_M);
             let normal = if normal.z.abs() > 0.99 && !ceiling { DVec3::Z } else { normal };
-            let grid = grid::polygon(corners, normal, spec.rule, spec.border_m)?;
+            let grid = grid::polygon(corners, normal, spec.rule, spec.border_m, &lights)?;
             Ok(if spec.kind == AreaKind::Surface { snapped(grid, scene) } else { grid })
         }
         AreaShape::Points(points) => Ok(grid::list(points, DVec3::Z)),
@@ -342,7 +372,7 @@ fn quantities(project: &Project, world: &World, spec: &AreaSpec, index: usize, g
             wanted.push(requirement.quantity);
         }
     }
-    wanted.retain(|quantity| !matches!(quantity, Quantity::Ugr | Quantity::ColourRendering));
+    wanted.retain(|quantity| !quantity.is_single());
     wanted
 }
 
@@ -410,6 +440,12 @@ fn kernel(quantity: Quantity, normal: DVec3) -> Option<Kernel> {
         }
         Quantity::Hemispherical => Some(Kernel::Hemispherical { axis: DVec3::Z }),
         Quantity::Spherical => Some(Kernel::Spherical),
-        Quantity::Modelling | Quantity::Luminance { .. } | Quantity::Ugr | Quantity::ColourRendering => None,
+        Quantity::Modelling
+        | Quantity::Luminance { .. }
+        | Quantity::Ugr
+        | Quantity::ColourRendering
+        | Quantity::DiscomfortIndex
+        | Quantity::Declared(_)
+        | Quantity::NotComputed(_) => None,
     }
 }

@@ -1,16 +1,19 @@
-//! Norm rows and `[[require]]` → requirements on what is measured.
+//! Norm rows and `[[require]]` → requirements on what is measured. What a norm regulates and nothing
+//! here can judge becomes a requirement that is "not assessed", with the reason: never silence.
 
 use super::{Plan, PlanError, PlannedArea, PlannedRequirement, PlannedRoom, Subject};
-use crate::norm::{self, Limit, Verified, Zone};
-use crate::outcome::Bound;
+use crate::norm::{self, Limit, Row, Standard, UgrMethod, Unknown, Verified, Zone};
+use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, CustomSubject, Norm, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
 
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     if let Some(norm) = &project.norm {
         for (index, room) in world.rooms.iter().enumerate() {
-            let required = of_norm(norm, room, &plan.rooms[index], errors);
+            let required = of_norm(norm, world, index, room, &plan.rooms[index], errors);
+            let planes = other_planes(norm, room, &plan.rooms[index]);
             plan.rooms[index].requirements.extend(required);
+            plan.reasons.extend(planes);
         }
     }
     for requirement in &world.requirements {
@@ -34,6 +37,7 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
                 statistic: requirement.statistic,
                 bound,
                 verified: "project".into(),
+                modified: None,
             });
         }
     }
@@ -49,15 +53,12 @@ fn subject(
     match requirement.subject {
         CustomSubject::Area(area) => {
             let spec = &world.areas[area];
-            let found =
-                plan.rooms[spec.room].areas.iter().enumerate().find(|(_, planned)| planned.name == spec.name);
-            let subject = found
-                .and_then(|(place, planned)| {
-                    let entry =
-                        planned.quantities.iter().position(|entry| entry.quantity == requirement.quantity)?;
-                    Some(Subject::Area(place, entry))
-                })
-                .unwrap_or_else(|| Subject::Missing("this quantity is not measured on an area".into()));
+            let planned = &plan.rooms[spec.room];
+            let found = planned.areas.iter().position(|planned| planned.name == spec.name);
+            let subject = found.map_or_else(
+                || Subject::Missing("the area has no points".into()),
+                |place| on(planned, place, requirement.quantity, requirement.statistic),
+            );
             (spec.room, subject, spec.name.clone())
         }
         CustomSubject::Viewpoint(view) => {
@@ -65,22 +66,68 @@ fn subject(
             (spec.room, Subject::Viewpoint(view), spec.name.clone())
         }
         CustomSubject::Room(room) => {
-            let subject = match requirement.quantity {
-                // One ratio in a project: with another the same room has quite another UGR.
-                Quantity::Ugr => Subject::UgrTable(project.norm.as_ref().map_or_else(
-                    || norm::Application::default().ugr_shr.value,
-                    |norm| norm.standard.application.ugr_shr.value,
-                )),
-                Quantity::ColourRendering => Subject::ColourRendering,
-                _ => Subject::Missing("a room has no grid of its own: name one of its areas".into()),
-            };
+            // One ratio in a project: with another the same room has quite another UGR.
+            let shr = project.norm.as_ref().map_or_else(
+                || norm::Application::default().ugr_shr.value,
+                |norm| norm.standard.application.ugr_shr.value,
+            );
+            let subject = of_room(requirement.quantity, shr).unwrap_or_else(|| {
+                Subject::Missing("a room has no grid of its own: name one of its areas".into())
+            });
             (room, subject, world.rooms[room].name.clone())
         }
     }
 }
 
+/// What is measured or declared of a room as a whole; `None` for what needs points.
+fn of_room(quantity: Quantity, shr: f64) -> Option<Subject> {
+    match quantity {
+        Quantity::Ugr => Some(Subject::UgrTable(shr)),
+        Quantity::DiscomfortIndex => Some(Subject::DiscomfortTable(shr)),
+        Quantity::ColourRendering => Some(Subject::ColourRendering),
+        Quantity::Declared(property) => Some(Subject::Declared(property)),
+        Quantity::NotComputed(_) => Some(Subject::Missing("gershun does not compute this quantity".into())),
+        _ => None,
+    }
+}
+
+/// A statistic of a quantity on an area, if it is measured there.
+fn on(planned: &PlannedRoom, place: usize, quantity: Quantity, statistic: Statistic) -> Subject {
+    let area = &planned.areas[place];
+    // A limit on the plane of the task is measured on the area's own normal where it is not horizontal.
+    let found = |area: &PlannedArea, wanted: Quantity| {
+        area.quantities.iter().position(|entry| {
+            entry.quantity == wanted || (wanted == Quantity::Horizontal && entry.quantity == Quantity::Normal)
+        })
+    };
+    let Some(entry) = found(area, quantity) else {
+        let upright = quantity == Quantity::Normal && found(area, Quantity::Horizontal).is_some();
+        return Subject::Missing(if upright {
+            "the row is for a vertical plane and this area is horizontal".into()
+        } else {
+            format!("{} is not measured on this area", quantity.key())
+        });
+    };
+    if statistic != Statistic::OfTask {
+        return Subject::Area(place, entry);
+    }
+    let mut tasks = planned.areas.iter().enumerate().filter(|(_, area)| area.kind == AreaKind::Task);
+    let task = match &area.of {
+        Some(of) => tasks.find(|(_, task)| task.name == *of),
+        None if area.kind == AreaKind::Task => Some((place, area)),
+        None => tasks.next().filter(|_| tasks.next().is_none()),
+    };
+    let task = task.and_then(|(place, task)| Some((place, found(task, Quantity::Horizontal)?)));
+    match task {
+        Some((of, of_entry)) => Subject::OfTask(place, entry, of, of_entry),
+        None => Subject::Missing("the area names no task area to compare with (`of`)".into()),
+    }
+}
+
 fn of_norm(
     norm: &Norm,
+    world: &World,
+    index: usize,
     room: &Room,
     planned: &PlannedRoom,
     errors: &mut Vec<PlanError>,
@@ -90,83 +137,214 @@ fn of_norm(
     let mut no_row = |row: &str, by: String| {
         errors.push(PlanError::NoRow { standard: standard.id.clone(), row: row.into(), by });
     };
+    let own = room.row.as_ref().or(norm.row.as_ref());
+    let mut rows: Vec<&Row> = Vec::new();
+    if let Some(reference) = own {
+        match standard.row(reference) {
+            Some(row) => rows.push(row),
+            None => no_row(reference, format!("room \"{}\"", room.name)),
+        }
+    }
     for (place, area) in planned.areas.iter().enumerate() {
         let Some(reference) = &area.row else { continue };
         let Some(row) = standard.row(reference) else {
             no_row(reference, format!("area \"{}\"", area.name));
             continue;
         };
+        if !rows.iter().any(|known| known.reference == row.reference) {
+            rows.push(row);
+        }
         let Some(zone) = zone_of(room, area) else { continue };
-        for limit in standard.requirements(row).iter().filter(|limit| limit.zone == zone) {
-            required.push(on_area(standard, reference, limit, place, area));
+        let modified = modification(standard, room, row, own);
+        let level_lx = modified.as_ref().map(|(lx, _)| *lx);
+        for limit in standard.requirements_at(row, level_lx).iter().filter(|limit| limit.zone == zone) {
+            let subject = on(planned, place, limit.quantity, limit.statistic);
+            let mut one = requirement(standard, row, limit, subject, &area.name);
+            if let Subject::Area(place, entry) | Subject::OfTask(place, entry, ..) = one.subject {
+                one.quantity = planned.areas[place].quantities[entry].quantity;
+            }
+            one.light_scene = area.light_scene;
+            if limit.zone == Zone::Task && limit.statistic == standard_level(row) {
+                one.modified = modified.as_ref().map(|(_, modified)| modified.clone());
+            }
+            required.push(one);
         }
     }
-    let Some(reference) = room.row.as_ref().or(norm.row.as_ref()) else { return required };
-    let Some(row) = standard.row(reference) else {
-        no_row(reference, format!("room \"{}\"", room.name));
-        return required;
-    };
-    for limit in standard.requirements(row) {
-        let subject = match (limit.zone, limit.quantity) {
-            (Zone::Room, Quantity::Ugr) => Subject::UgrTable(standard.application.ugr_shr.value),
-            (Zone::Declared, Quantity::ColourRendering) => Subject::ColourRendering,
-            (Zone::Room | Zone::Declared, _) => {
-                Subject::Missing("gershun does not compute this quantity".into())
-            }
-            (zone, _) if !has_zone(room, planned, zone) && limit.statistic == Statistic::Mean => {
-                Subject::Missing(format!("the project lists no {} in this room", zone_name(zone)))
-            }
-            _ => continue,
-        };
-        required.push(PlannedRequirement {
-            standard: standard.id.clone(),
-            clause: reference.clone(),
-            subject,
-            subject_name: match limit.zone {
-                Zone::Room | Zone::Declared => room.name.clone(),
-                zone => zone_name(zone).into(),
-            },
-            light_scene: 0,
-            quantity: limit.quantity,
-            statistic: limit.statistic,
-            bound: bound(limit.bound),
-            verified: verified(limit.verified),
+    for (number, row) in rows.into_iter().enumerate() {
+        let is_own = number == 0 && own == Some(&row.reference);
+        required.extend(whole_room(norm, world, index, room, planned, row, is_own));
+        // A second row repeats what the first asks of the room: once is enough.
+        let mut seen: Vec<PlannedRequirement> = Vec::new();
+        required.retain(|one| {
+            let same = |other: &PlannedRequirement| {
+                other.subject == one.subject
+                    && other.subject_name == one.subject_name
+                    && other.quantity == one.quantity
+                    && other.statistic == one.statistic
+                    && format!("{:?}", other.bound) == format!("{:?}", one.bound)
+            };
+            let is_new = !seen.iter().any(same);
+            seen.push(one.clone());
+            is_new
         });
+    }
+    for beyond in &standard.application.beyond {
+        if let Some(quantity) = Quantity::parse(&beyond.quantity) {
+            let mut one = unassessed(standard, "", quantity, Statistic::Value, beyond.reason.clone());
+            one.subject_name.clone_from(&room.name);
+            required.push(one);
+        }
+    }
+    if let Some(reason) = &standard.application.not_judged {
+        for one in &mut required {
+            one.subject = Subject::Missing(reason.clone());
+        }
     }
     required
 }
 
-fn on_area(
-    standard: &norm::Standard,
-    reference: &str,
+/// The statistic of the row's required illuminance.
+fn standard_level(row: &Row) -> Statistic {
+    row.illuminance().map_or(Statistic::Mean, |limit| limit.statistic)
+}
+
+/// The illuminance asked for in this context and how it came about; only for the room's own row.
+fn modification(
+    standard: &Standard,
+    room: &Room,
+    row: &Row,
+    own: Option<&String>,
+) -> Option<(f64, Modified)> {
+    let modified = room.modified.as_ref().filter(|_| own == Some(&row.reference))?;
+    let level_lx = standard.modified_illuminance(row, modified.steps).ok()?;
+    let norm::Bound::Min(required_lx) = row.illuminance()?.bound else { return None };
+    Some((level_lx, Modified { required_lx, steps: modified.steps, reason: modified.reason.clone() }))
+}
+
+/// What a row asks of the room as a whole, and what of it nothing in the project lets one judge.
+fn whole_room(
+    norm: &Norm,
+    world: &World,
+    index: usize,
+    room: &Room,
+    planned: &PlannedRoom,
+    row: &Row,
+    is_own: bool,
+) -> Vec<PlannedRequirement> {
+    let standard = &norm.standard;
+    let application = &standard.application;
+    let mut required = Vec::new();
+    for limit in &standard.requirements(row) {
+        let subjects: Vec<(Subject, String)> = match limit.zone {
+            Zone::Room | Zone::Declared => {
+                let observed = application.ugr_method.value == UgrMethod::Observers;
+                if limit.quantity == Quantity::Ugr && observed {
+                    observers(world, index, room)
+                } else {
+                    let subject = of_room(limit.quantity, application.ugr_shr.value).unwrap_or_else(|| {
+                        Subject::Missing("gershun does not compute this quantity of a room".into())
+                    });
+                    vec![(subject, room.name.clone())]
+                }
+            }
+            zone => {
+                let leading = matches!(limit.statistic, Statistic::Mean | Statistic::Min | Statistic::OfTask);
+                if !is_own || !leading || has_zone(room, planned, zone, application) {
+                    continue;
+                }
+                let name = zone_name(zone);
+                let reason = format!("the project lists no {name} in this room");
+                vec![(Subject::Missing(reason), name.to_owned())]
+            }
+        };
+        for (subject, name) in subjects {
+            required.push(requirement(standard, row, limit, subject, &name));
+        }
+    }
+    for Unknown { column, zone, quantity, statistic } in &row.unknown {
+        let of_room = matches!(zone, Zone::Room | Zone::Declared);
+        if !is_own && !of_room {
+            continue;
+        }
+        let reason = format!("the norm's file has no value of {column} for row {}", row.reference);
+        let mut one = unassessed(standard, &row.reference, *quantity, *statistic, reason);
+        one.subject_name = if of_room { room.name.clone() } else { zone_name(*zone).to_owned() };
+        required.push(one);
+    }
+    required
+}
+
+/// A norm that judges glare at observers: every one of the room, by its worst direction.
+fn observers(world: &World, index: usize, room: &Room) -> Vec<(Subject, String)> {
+    let own = world.viewpoints.iter().enumerate().filter(|(_, view)| view.room == index);
+    let own: Vec<(Subject, String)> =
+        own.map(|(view, spec)| (Subject::Viewpoint(view), spec.name.clone())).collect();
+    if own.is_empty() {
+        let reason = "the norm judges UGR at observers and the project lists no viewpoint here".into();
+        return vec![(Subject::Missing(reason), room.name.clone())];
+    }
+    own
+}
+
+fn requirement(
+    standard: &Standard,
+    row: &Row,
     limit: &Limit,
-    place: usize,
-    area: &PlannedArea,
+    subject: Subject,
+    subject_name: &str,
 ) -> PlannedRequirement {
-    // A limit on the plane of the task is measured on the area's own normal where it is not horizontal.
-    let same = |entry: &super::PlannedQuantity| {
-        entry.quantity == limit.quantity
-            || (limit.quantity == Quantity::Horizontal && entry.quantity == Quantity::Normal)
-    };
-    let subject = area.quantities.iter().position(same).map_or_else(
-        || Subject::Missing(format!("{} is not measured on this area", limit.quantity.key())),
-        |entry| Subject::Area(place, entry),
-    );
-    let quantity = match subject {
-        Subject::Area(_, entry) => area.quantities[entry].quantity,
-        _ => limit.quantity,
-    };
     PlannedRequirement {
         standard: standard.id.clone(),
-        clause: reference.into(),
+        clause: row.reference.clone(),
         subject,
-        subject_name: area.name.clone(),
-        light_scene: area.light_scene,
-        quantity,
+        subject_name: subject_name.into(),
+        light_scene: 0,
+        quantity: limit.quantity,
         statistic: limit.statistic,
         bound: bound(limit.bound),
         verified: verified(limit.verified),
+        modified: None,
     }
+}
+
+/// Something regulated whose limit is not known: no number, no verdict, a reason.
+fn unassessed(
+    standard: &Standard,
+    clause: &str,
+    quantity: Quantity,
+    statistic: Statistic,
+    reason: String,
+) -> PlannedRequirement {
+    PlannedRequirement {
+        standard: standard.id.clone(),
+        clause: clause.into(),
+        subject: Subject::Missing(reason),
+        subject_name: String::new(),
+        light_scene: 0,
+        quantity,
+        statistic,
+        bound: Bound::Min(f64::NAN),
+        verified: "unknown".into(),
+        modified: None,
+    }
+}
+
+/// Areas that lie in another plane than the one their row names: said, not judged otherwise.
+fn other_planes(norm: &Norm, room: &Room, planned: &PlannedRoom) -> Vec<String> {
+    let tasks = planned.areas.iter().filter(|area| area.kind == AreaKind::Task);
+    let said = tasks.filter_map(|area| {
+        let row = norm.standard.row(area.row.as_ref()?)?;
+        let named_m = row.plane_m.filter(|_| row.plane == norm::Plane::Horizontal)?;
+        let found_m = area.grid.points.first()?.position.z - room.floor_m;
+        let horizontal = area.grid.normal.z.abs() > 0.99;
+        (horizontal && (found_m - named_m).abs() > 0.021).then(|| {
+            format!(
+                "Area \"{}\" lies at {found_m:.2} m, row {} names a plane at {named_m:.2} m.",
+                area.name, row.reference
+            )
+        })
+    });
+    said.collect()
 }
 
 /// Zone of the norm that an area plays; `None` for surfaces that are neither wall nor ceiling.
@@ -201,10 +379,26 @@ fn on_outline(room: &Room, at: glam::DVec3) -> bool {
     })
 }
 
-fn has_zone(room: &Room, planned: &PlannedRoom, zone: Zone) -> bool {
-    // The zones beyond the task are optional where the task area is the whole room.
-    let optional = matches!(zone, Zone::Surrounding | Zone::Background);
-    optional || planned.areas.iter().any(|area| zone_of(room, area) == Some(zone))
+fn has_zone(room: &Room, planned: &PlannedRoom, zone: Zone, rules: &norm::Application) -> bool {
+    // Beyond a task area that fills the room there is nothing to judge.
+    let around = matches!(zone, Zone::Surrounding | Zone::Background);
+    around && is_filled(room, planned, rules.border_m.value)
+        || planned.areas.iter().any(|area| zone_of(room, area) == Some(zone))
+}
+
+/// Whether the horizontal task areas cover the room up to the border that a grid may leave out.
+fn is_filled(room: &Room, planned: &PlannedRoom, border_m: f64) -> bool {
+    let corners = &room.footprint;
+    let count = corners.len();
+    let doubled: f64 = (0..count).map(|i| corners[i].perp_dot(corners[(i + 1) % count])).sum();
+    let around_m: f64 = (0..count).map(|i| corners[i].distance(corners[(i + 1) % count])).sum();
+    let needed_m2 = (0.5 * doubled.abs() - border_m * around_m).max(0.25 * doubled.abs());
+    let tasks = planned.areas.iter().filter(|area| area.kind == AreaKind::Task);
+    let covered_m2: f64 = tasks
+        .filter(|area| area.grid.normal.z.abs() > 0.99)
+        .map(|area| area.grid.edge_u.length() * area.grid.edge_v.length())
+        .sum();
+    covered_m2 >= needed_m2
 }
 
 fn zone_name(zone: Zone) -> &'static str {
@@ -228,10 +422,5 @@ fn bound(bound: norm::Bound) -> Bound {
 }
 
 fn verified(verified: Verified) -> String {
-    match verified {
-        Verified::Unverified => "unverified",
-        Verified::OneSource => "one-source",
-        Verified::TwoSources => "two-sources",
-    }
-    .into()
+    verified.key().into()
 }

@@ -174,6 +174,8 @@ pub struct Room {
     pub height_m: f64,
     /// Row of the norm, if the project names one.
     pub row: Option<String>,
+    /// Whether the row's illuminance is raised or lowered here, and why.
+    pub modified: Option<Modification>,
     /// Room surface maintenance factor.
     pub rsmf: f64,
     /// Mean reflectances of ceiling, walls, floor (area-weighted shell materials), for the UGR table.
@@ -186,6 +188,15 @@ pub struct Room {
     pub floor: Vec<u32>,
     /// Luminaires (scene indices) that hang in this room.
     pub luminaires: Vec<usize>,
+}
+
+/// Context of a room that changes the illuminance its row asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Modification {
+    /// Steps along the norm's scale; `None`: the row's value for difficult conditions.
+    pub steps: Option<i32>,
+    /// Why, in the user's words; never empty.
+    pub reason: String,
 }
 
 /// What an area is in the sense of the norm.

@@ -134,10 +134,18 @@ pub struct RoomSection {
     pub floor: Option<At<f64>>,
     pub node: Option<At<String>>,
     pub row: Option<At<String>>,
+    pub modified: Option<At<ModifiedSection>>,
     pub mf: Option<At<RoomMaintenance>>,
     pub reflectances: Option<At<ReflectancesSection>>,
     #[serde(default)]
     pub openings: Vec<At<OpeningSection>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModifiedSection {
+    pub steps: Option<At<i32>>,
+    pub reason: At<String>,
 }
 
 #[derive(Debug, Deserialize)]

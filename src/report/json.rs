@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::ReportError;
 use super::sentence::{bound, verdict_key};
 use crate::outcome::{
-    AreaOutcome, Bias, FluxBalance, GlareSourceOutcome, Interval, NormOutcome, Outcome, Requirement,
-    RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
+    AreaOutcome, Bias, FluxBalance, GlareSourceOutcome, Interval, Modified, NormOutcome, Outcome,
+    Requirement, RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
 };
 use crate::project::{AreaKind, Info, InputFile};
 use crate::quantity::{Quantity, Statistic};
@@ -52,6 +52,8 @@ struct RequirementRow<'a> {
     outcome: &'static str,
     at_the_limit: bool,
     other_comparison: Option<&'static str>,
+    blocks_needed: Option<usize>,
+    modified: Option<&'a Modified>,
     verified: &'a str,
     note: &'a str,
     at_risk: &'a [String],
@@ -163,10 +165,7 @@ pub fn result(outcome: &Outcome) -> Result<Vec<u8>, ReportError> {
 
 /// Unit of a statistic of a quantity; `1` for ratios.
 pub fn unit(quantity: Quantity, statistic: Statistic) -> &'static str {
-    match statistic {
-        Statistic::U0 | Statistic::Ud => "1",
-        Statistic::Mean | Statistic::Min | Statistic::Max | Statistic::Value => quantity.unit(),
-    }
+    if statistic.is_ratio() { "1" } else { quantity.unit() }
 }
 
 /// Pretty-printed JSON with a final line feed.
@@ -206,6 +205,8 @@ fn requirement(r: &Requirement) -> RequirementRow<'_> {
         outcome: verdict_key(r.verdict),
         at_the_limit: r.at_the_limit,
         other_comparison: r.other_comparison.map(verdict_key),
+        blocks_needed: r.blocks_needed,
+        modified: r.modified.as_ref(),
         verified: &r.verified,
         note: &r.note,
         at_risk: &r.at_risk,

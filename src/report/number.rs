@@ -2,7 +2,7 @@
 //! never use these.
 
 use super::words::{Lang, Term, word};
-use crate::quantity::{Quantity, Statistic};
+use crate::quantity::{Property, Quantity, Statistic, Unmeasured};
 
 /// U+202F, between groups of three digits.
 const NARROW_NO_BREAK_SPACE: char = '\u{202f}';
@@ -89,16 +89,16 @@ pub fn value_beside(lang: Lang, quantity: Quantity, statistic: Statistic, shown:
 
 /// A limit, without the zeros that rounding would add to UGR and R_a.
 pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -> String {
-    let whole = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering) && limit.fract().abs() < 1e-9;
+    let whole = quantity.is_single() && limit.fract().abs() < 1e-9;
     if whole { fixed(lang, limit, 0) } else { value(lang, quantity, statistic, limit) }
 }
 
 fn is_luminance(quantity: Quantity, statistic: Statistic) -> bool {
-    matches!(quantity, Quantity::Luminance { .. }) && !matches!(statistic, Statistic::U0 | Statistic::Ud)
+    matches!(quantity, Quantity::Luminance { .. }) && !statistic.is_ratio()
 }
 
 fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
-    if matches!(statistic, Statistic::U0 | Statistic::Ud) {
+    if statistic.is_ratio() {
         return 2;
     }
     match quantity {
@@ -109,20 +109,26 @@ fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
         | Quantity::Semicylindrical { .. }
         | Quantity::Hemispherical
         | Quantity::Spherical => illuminance_decimals(value),
-        Quantity::Modelling => 2,
         Quantity::Luminance { .. } | Quantity::ColourRendering => 0,
-        Quantity::Ugr => 1,
+        Quantity::Modelling
+        | Quantity::Declared(Property::PstLm | Property::Svm)
+        | Quantity::NotComputed(Unmeasured::DaylightGlare) => 2,
+        Quantity::Ugr
+        | Quantity::DiscomfortIndex
+        | Quantity::Declared(Property::Pulsation)
+        | Quantity::NotComputed(Unmeasured::GlareRating | Unmeasured::DaylightFactor) => 1,
     }
 }
 
 /// The unit of a statistic of a quantity with a space before it; empty for ratios and indices.
 pub fn unit(lang: Lang, quantity: Quantity, statistic: Statistic) -> String {
-    if matches!(statistic, Statistic::U0 | Statistic::Ud) {
+    if statistic.is_ratio() {
         return String::new();
     }
     match quantity.unit() {
         "lx" => format!("\u{a0}{}", word(lang, Term::UnitLux)),
         "cd/m²" => format!("\u{a0}{}", word(lang, Term::UnitNits)),
+        "%" => "\u{a0}%".into(),
         _ => String::new(),
     }
 }

@@ -73,6 +73,12 @@ fn verdict(lang: Lang, r: &Requirement) -> String {
     let mut lines: Vec<String> = Vec::new();
     lines.extend(r.value.as_ref().err().map(|undefined| escape(&words::said(lang, &undefined.reason))));
     lines.extend((!r.note.is_empty() && !is_maintained(r)).then(|| escape(&words::note(lang, &r.note))));
+    lines.extend(r.blocks_needed.map(|blocks| phrase(lang, Term::BlocksNeeded, &[&blocks.to_string()])));
+    lines.extend(r.modified.as_ref().map(|modified| {
+        let unit = super::number::unit(lang, r.quantity, r.statistic);
+        let from = super::number::limit(lang, r.quantity, r.statistic, modified.required_lx);
+        phrase(lang, Term::ModifiedFrom, &[&format!("{from}{unit}"), &escape(&modified.reason)])
+    }));
     lines.extend(
         r.other_comparison.map(|other| phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)])),
     );

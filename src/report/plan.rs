@@ -150,7 +150,7 @@ pub fn statistic_of(subject: Subject<'_>, statistic: Statistic) -> Option<f64> {
         Statistic::Max => Some(max),
         Statistic::U0 => (mean > 0.0).then(|| min / mean),
         Statistic::Ud => (max > 0.0).then(|| min / max),
-        Statistic::Value => None,
+        Statistic::OfTask | Statistic::Value => None,
     }
 }
 

@@ -300,6 +300,8 @@ fn requirement(
         verdict,
         at_the_limit: false,
         other_comparison: None,
+        blocks_needed: None,
+        modified: None,
         verified: "two-sources".into(),
         note: String::new(),
         at_risk: Vec::new(),

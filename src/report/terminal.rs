@@ -74,6 +74,10 @@ fn requirements(listed: &[&Requirement], naming: Naming, style: Style) -> String
         if is_at_the_limit(requirement) {
             verdict = format!("{verdict}, {}", word(lang, Term::AtTheLimit));
         }
+        if let Some(blocks) = requirement.blocks_needed {
+            let needed = phrase(lang, Term::BlocksNeeded, &[&blocks.to_string()]);
+            verdict = format!("{verdict}: {needed}");
+        }
         if let Err(undefined) = &requirement.value
             && !undefined.reason.is_empty()
         {
@@ -150,6 +154,15 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
     note(any(&is_at_the_limit), word(lang, Term::AtTheLimitMeans).to_owned());
     note(any(&|r| r.verdict == Verdict::Undecided), word(lang, Term::UndecidedMeans).to_owned());
     for requirement in listed {
+        if let Some(modified) = &requirement.modified {
+            let (quantity, statistic) = (requirement.quantity, requirement.statistic);
+            let unit = super::number::unit(lang, quantity, statistic);
+            let from = super::number::limit(lang, quantity, statistic, modified.required_lx);
+            let parts = [format!("{from}{unit}"), one_line(&modified.reason)];
+            let said = phrase(lang, Term::ModifiedFrom, &[&parts[0], &parts[1]]);
+            let symbol = words::symbol(lang, quantity, statistic).text();
+            note(true, format!("{symbol} · {}: {said}", one_line(&requirement.subject)));
+        }
         if let Some(other) = requirement.other_comparison {
             let subject = format!(
                 "{} · {}",

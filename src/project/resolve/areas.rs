@@ -104,7 +104,7 @@ fn quantities(names: &[At<String>], context: &mut Context) -> Vec<Quantity> {
     let mut quantities = Vec::new();
     for name in names {
         match Quantity::parse(name.get_ref()) {
-            Some(Quantity::Ugr | Quantity::ColourRendering) => {
+            Some(quantity) if quantity.is_single() => {
                 let message = format!("{} is no quantity of an area", name.get_ref());
                 context.error(&name.span(), message, "UGR belongs to rooms and viewpoints");
             }

@@ -37,6 +37,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     }
     let norm = settings::norm(file, context);
     settings::check_rows(file, norm.as_ref(), context);
+    settings::check_modified(file, norm.as_ref(), context);
     furniture::add(&file.furniture, &mut drafts, &mut palette, context);
     if rooms_complete {
         palette.report_unused(context);

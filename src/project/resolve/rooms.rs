@@ -9,9 +9,9 @@ use super::materials::{Palette, mean_reflectance};
 use super::shell::Shell;
 use super::walled::{Boundary, walled_draft};
 use crate::geometry::polygon;
-use crate::project::Room;
 use crate::project::context::Context;
 use crate::project::schema::{At, BoxSection, File, RoomSection};
+use crate::project::{Modification, Room};
 
 /// Builds all worlds with their rooms.
 pub fn drafts(file: &File, project_name: &str, palette: &mut Palette, context: &mut Context) -> Vec<Draft> {
@@ -99,6 +99,10 @@ pub fn add_room(
         floor_m,
         height_m,
         row: section.and_then(|s| s.row.as_ref().map(|row| row.get_ref().clone())),
+        modified: section.and_then(|s| s.modified.as_ref()).map(|modified| Modification {
+            steps: modified.get_ref().steps.as_ref().map(|steps| *steps.get_ref()),
+            reason: modified.get_ref().reason.get_ref().trim().to_owned(),
+        }),
         rsmf,
         reflectances,
         walls: indices(&shell.walls),

@@ -17,7 +17,7 @@ use crate::quantity::{Quantity, SPELLINGS, Statistic};
 /// Languages a report can be written in.
 const LANGUAGES: &[&str] = &["en", "ru"];
 /// Keys of [`Statistic`].
-const STATISTICS: &[&str] = &["mean", "min", "max", "U0", "Ud", "value"];
+const STATISTICS: &[&str] = &["mean", "min", "max", "U0", "Ud", "mean/task", "value"];
 
 /// Head of the report.
 pub fn info(section: &ProjectSection, context: &mut Context) -> Info {
@@ -74,14 +74,12 @@ pub fn norm(file: &File, context: &mut Context) -> Option<Norm> {
         Ok(standard) => standard,
         Err(error) => {
             for mistake in error.mistakes {
-                let source = text.lines().nth(mistake.line.saturating_sub(1));
-                let source_line = source.unwrap_or_default().to_owned();
                 context.diagnostics.push(Diagnostic {
                     file: mistake.file,
                     line: mistake.line,
-                    column: 1,
-                    width: source_line.chars().count().max(1),
-                    source_line,
+                    column: mistake.column,
+                    width: mistake.width,
+                    source_line: mistake.source_line,
                     message: mistake.what,
                     hint: mistake.hint,
                 });
@@ -116,6 +114,38 @@ pub fn check_rows(file: &File, norm: Option<&Norm>, context: &mut Context) {
                 let message = format!("{} has no row \"{}\"", norm.standard.id, row.get_ref());
                 context.error(&row.span(), message, &hint);
             }
+        }
+    }
+}
+
+/// A modified illuminance needs a reason, a row, and a value to go to.
+pub fn check_modified(file: &File, norm: Option<&Norm>, context: &mut Context) {
+    for room in &file.rooms {
+        let Some(modified) = &room.get_ref().modified else { continue };
+        let reason = &modified.get_ref().reason;
+        if reason.get_ref().trim().is_empty() {
+            let hint = "reason = \"visual tasks are critical\"";
+            context.error(&reason.span(), "a modified illuminance needs its reason", hint);
+        }
+        let span = modified.get_ref().steps.as_ref().map_or(modified.span(), At::span);
+        let Some(norm) = norm else {
+            if file.norm.is_none() && !file.may_have_lost("norm", "") {
+                let hint = "[norm] standard = \"en-12464-1-2021\"";
+                context.error(&modified.span(), "a modified illuminance needs a norm", hint);
+            }
+            continue;
+        };
+        let row = room.get_ref().row.as_ref().map(At::get_ref).or(norm.row.as_ref());
+        let Some(row) = row else {
+            let message = "a modified illuminance needs a row to modify";
+            context.error(&modified.span(), message, "give the room a row");
+            continue;
+        };
+        // A row that does not exist was reported already.
+        let Some(row) = norm.standard.row(row) else { continue };
+        let steps = modified.get_ref().steps.as_ref().map(|steps| *steps.get_ref());
+        if let Err(why) = norm.standard.modified_illuminance(row, steps) {
+            context.error(&span, format!("no modified illuminance: {why}"), "");
         }
     }
 }
@@ -193,16 +223,15 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             continue;
         }
         let statistic = statistic.unwrap_or(Some(match (subject, quantity) {
-            (CustomSubject::Viewpoint(_), _) | (_, Quantity::Ugr | Quantity::ColourRendering) => {
-                Statistic::Value
-            }
+            (CustomSubject::Viewpoint(_), _) => Statistic::Value,
+            (_, quantity) if quantity.is_single() => Statistic::Value,
             (CustomSubject::Room(_) | CustomSubject::Area(_), _) => Statistic::Mean,
         }));
         let Some(statistic) = statistic else { continue };
-        let single = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering);
+        let single = quantity.is_single();
         if let (Some(key), true) = (&section.statistic, single != (statistic == Statistic::Value)) {
             let message = format!("no statistic \"{}\" of {}", key.get_ref(), section.quantity.get_ref());
-            let hint = if single { "leave it out" } else { "there is: mean, min, max, U0, Ud" };
+            let hint = if single { "leave it out" } else { "there is: mean, min, max, U0, Ud, mean/task" };
             context.error(&key.span(), message, hint);
             continue;
         }
@@ -220,7 +249,7 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
 /// Whether a quantity exists where it is required: what nothing could ever decide is a mistake, not
 /// a requirement that is left unassessed.
 fn suits(subject: CustomSubject, quantity: Quantity, name: &At<String>, context: &mut Context) -> bool {
-    let single = matches!(quantity, Quantity::Ugr | Quantity::ColourRendering);
+    let single = quantity.is_single();
     let (what, hint) = match subject {
         CustomSubject::Room(_) if !single => ("a room", "it is measured on areas: name one, area = \"…\""),
         CustomSubject::Area(_) if single => ("an area", "require it of a room or, UGR, of a viewpoint"),

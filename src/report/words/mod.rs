@@ -11,7 +11,7 @@ use std::borrow::Cow;
 
 use crate::outcome::Verdict;
 use crate::project::AreaKind;
-use crate::quantity::{Quantity, Statistic};
+use crate::quantity::{Property, Quantity, Statistic, Unmeasured};
 
 /// A report language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,6 +115,13 @@ pub fn quantity(lang: Lang, quantity: Quantity) -> String {
             Quantity::Luminance { .. } => Term::Luminance,
             Quantity::Ugr => Term::Ugr,
             Quantity::ColourRendering => Term::ColourRendering,
+            Quantity::DiscomfortIndex => Term::DiscomfortIndex,
+            Quantity::Declared(Property::Pulsation) => Term::Pulsation,
+            Quantity::Declared(Property::PstLm) => Term::PstLm,
+            Quantity::Declared(Property::Svm) => Term::Svm,
+            Quantity::NotComputed(Unmeasured::GlareRating) => Term::GlareRating,
+            Quantity::NotComputed(Unmeasured::DaylightFactor) => Term::DaylightFactor,
+            Quantity::NotComputed(Unmeasured::DaylightGlare) => Term::DaylightGlare,
         },
     );
     match direction(quantity) {
@@ -155,15 +162,17 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Quantity::Semicylindrical { .. } => word(lang, Term::IndexSemicylindrical),
         Quantity::Hemispherical => word(lang, Term::IndexHemispherical),
         Quantity::Spherical => word(lang, Term::IndexSpherical),
-        Quantity::Luminance { .. } | Quantity::Modelling | Quantity::Ugr | Quantity::ColourRendering => "",
+        Quantity::Declared(Property::Pulsation) => word(lang, Term::IndexPulsation),
+        Quantity::Luminance { .. }
+        | Quantity::Modelling
+        | Quantity::Ugr
+        | Quantity::ColourRendering
+        | Quantity::DiscomfortIndex
+        | Quantity::Declared(_)
+        | Quantity::NotComputed(_) => "",
     };
-    let letter = match quantity {
-        Quantity::Modelling => word(lang, Term::ModellingShort),
-        Quantity::Ugr => "UGR",
-        Quantity::ColourRendering => "R",
-        Quantity::Luminance { .. } => "L",
-        _ => "E",
-    };
+    let letter = letter(quantity, lang);
+    let letter = letter.as_str();
     let index = if quantity == Quantity::ColourRendering { "a" } else { index };
     let rest = direction(quantity).map_or_else(String::new, |at| format!(" {at}"));
     let with = |mark: &str| Symbol {
@@ -183,6 +192,7 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Statistic::Max => with(word(lang, Term::IndexMax)),
         Statistic::U0 => ratio("U", "0"),
         Statistic::Ud => ratio(word(lang, Term::MinByMax), ""),
+        Statistic::OfTask => ratio(word(lang, Term::MeanOfTask), ""),
         Statistic::Value => Symbol { letter: letter.into(), index: index.into(), rest },
     }
 }
@@ -193,6 +203,10 @@ fn letter(quantity: Quantity, lang: Lang) -> String {
         Quantity::Ugr => "UGR",
         Quantity::ColourRendering => "R",
         Quantity::Luminance { .. } => "L",
+        Quantity::DiscomfortIndex => "M",
+        Quantity::Declared(Property::Pulsation) => word(lang, Term::LetterPulsation),
+        Quantity::Declared(property) => property.key(),
+        Quantity::NotComputed(quantity) => quantity.key(),
         _ => "E",
     }
     .to_owned()
@@ -211,7 +225,10 @@ fn direction(quantity: Quantity) -> Option<String> {
         | Quantity::Spherical
         | Quantity::Modelling
         | Quantity::Ugr
-        | Quantity::ColourRendering => None,
+        | Quantity::ColourRendering
+        | Quantity::DiscomfortIndex
+        | Quantity::Declared(_)
+        | Quantity::NotComputed(_) => None,
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod common;
 mod differences;
+mod sphere;
 
 use common::{furnished, lambert, planar, point_lamp, room, row, sheets};
 use differences::{agree, demand};
@@ -75,6 +76,43 @@ fn a_cube_that_absorbs_a_thousandth_has_the_sphere_s_illuminance() {
             // The broken twin absorbs 10 % less.
             let twin = standard_errors(estimate, mean(0.9991), 0.05);
             assert!(twin > 5.0, "a twin off by 10 % passes: {twin} standard errors");
+        }
+    }
+}
+
+/// Catches: what the cube above would not show, in the methods that have no chains: the integrating
+/// sphere as a fine polyhedron, resolved to 0.3 %.
+#[test]
+fn an_integrating_sphere_has_one_illuminance() {
+    let local = LocalEffort { connections: 256.0, returns: 16, ..LocalEffort::default() };
+    let links = Effort { gather: 64, walks: 16, ..Effort::default() };
+    let local = Effort { local, ..Effort::default() };
+    for (rho, method, effort, blocks, resolve) in [
+        (0.5, Method::Links, links, 64, 0.003),
+        (0.95, Method::Links, links, 128, 0.003),
+        (0.999, Method::Links, Effort { walks: 4, ..links }, 64, 0.015),
+        (0.5, Method::Local, local, 8192, 0.01),
+        (0.95, Method::Local, local, 2048, 0.03),
+        (0.999, Method::Local, local, 256, 0.05),
+    ] {
+        let sphere = sphere::Sphere { rho, flux_lm: 1000.0 };
+        let scene = sphere.scene();
+        let receivers = sphere.receivers(&scene);
+        let demand =
+            Demand { receivers: receivers.iter().map(|(r, _)| r.clone()).collect(), ..Demand::default() };
+        // The broken twin is the truth of a sphere that absorbs less, by twice the resolution.
+        let factor = 1.0 + 2.0 * resolve;
+        let before = common::cpu_seconds();
+        let sheets = sheets(&scene, &demand, method, effort, 2, blocks);
+        println!("{method:?}, ρ {rho}: {:.1} CPU-s", common::cpu_seconds() - before);
+        for (index, (_, truth)) in receivers.iter().enumerate() {
+            let estimate = Estimate::from_blocks(&row(&sheets, index, 1));
+            // The truth holds to some 1e-4 of itself.
+            let estimate = Estimate { se: estimate.se.hypot(1e-4 * truth), ..estimate };
+            let z = standard_errors(estimate, *truth, resolve);
+            assert!(z < 5.0, "{method:?}, ρ {rho}: {z}");
+            let twin = standard_errors(estimate, truth * factor, resolve);
+            assert!(twin > 5.0, "{method:?}, ρ {rho}: the twin passes with {twin}");
         }
     }
 }

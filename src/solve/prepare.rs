@@ -17,8 +17,11 @@ const PATCHES: f64 = 1500.0;
 const DIRECT_SAMPLES: u32 = 4;
 /// Sweeps end when the stored flux changes by less than this share …
 const SETTLED: f64 = 1e-3;
-/// … or after this many: at a reflectance near 1 the rest is left to the residual.
+/// … or after this many; the rest is left to the residual.
 const MOST_SWEEPS: u32 = 100;
+/// Every so many sweeps the field is scaled to balance: at a reflectance near 1 a sweep brings all
+/// places nearer by a thousandth of what they still lack.
+const BALANCED: u32 = 8;
 
 /// What one patch side receives.
 struct Collected {
@@ -114,7 +117,10 @@ fn sweep(emitters: &Emitters, effort: &Effort, field: &mut LuminanceField, colle
         })
         .collect();
     let mut sums = vec![0.0; channels];
-    for _ in 0..MOST_SWEEPS {
+    for number in 1..=MOST_SWEEPS {
+        if number.is_multiple_of(BALANCED) {
+            balance(field, collected, &factor);
+        }
         let (mut change, mut whole) = (0.0, 0.0);
         for (side, entry) in collected.iter().enumerate() {
             if entry.links.is_empty() {
@@ -137,6 +143,24 @@ fn sweep(emitters: &Emitters, effort: &Effort, field: &mut LuminanceField, colle
         }
         if change <= SETTLED * whole {
             break;
+        }
+    }
+}
+
+/// Scales each channel so that the flux fed in equals what the field loses,
+/// Σ A first = Σ A (L − (ρ + τ)/n Σ L(link)); the truth is left as it is.
+fn balance(field: &mut LuminanceField, collected: &[Collected], factor: &[f64]) {
+    let channels = collected.first().map_or(0, |entry| entry.first.len());
+    for channel in 0..channels {
+        let (mut fed, mut lost) = (0.0, 0.0);
+        for (side, entry) in collected.iter().enumerate() {
+            let sum: f64 = entry.links.iter().map(|&link| field.at(link as usize)[channel]).sum();
+            let area = field.patches().area_m2(side);
+            fed += area * entry.first[channel];
+            lost += area * (field.at(side)[channel] - factor[side] * sum);
+        }
+        if lost > 0.0 && (fed / lost).is_finite() {
+            (0..collected.len()).for_each(|side| field.at_mut(side)[channel] *= fed / lost);
         }
     }
 }

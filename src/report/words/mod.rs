@@ -1,8 +1,10 @@
 //! The words of every report. A word is looked up here and nowhere else, so a language is one
 //! column of [`table::TERMS`]; texts that come from the solver (plan, biases) are not translated.
 
+mod lamp;
 mod table;
 
+pub use lamp::lamp_word;
 pub use table::{TERMS, Term};
 
 use crate::outcome::Verdict;

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
 
+use crate::args::LangChoice;
+
 /// Commands for photometric files.
 #[derive(Subcommand, Debug)]
 pub enum Lamp {
@@ -23,6 +25,9 @@ Examples:
         /// What is printed
         #[arg(long, value_enum, default_value_t = InfoFormat::Human)]
         format: InfoFormat,
+        /// Language of the words; findings are English
+        #[arg(long, value_enum, default_value_t = LangChoice::En)]
+        lang: LangChoice,
     },
     /// Faults of photometric files and what they would do to the result
     #[command(after_help = "Exit code 1 if a finding has severity error, 2 if a file cannot be opened.
@@ -38,6 +43,9 @@ Examples:
         /// What is printed
         #[arg(long, value_enum, default_value_t = LintFormat::Human)]
         format: LintFormat,
+        /// Language of the words; findings are English
+        #[arg(long, value_enum, default_value_t = LangChoice::En)]
+        lang: LangChoice,
     },
     /// UGR tables by CIE 117 and CIE 190: 19 rooms, 5 reflectance sets, crosswise and endwise
     #[command(after_help = "With several files, the CSV has a leading column `file`.
@@ -80,6 +88,51 @@ Example:
         /// File to write, .ies or .ldt
         output: PathBuf,
     },
+    /// Luminous intensity of luminaires as installed, with what their housing reflects, as .ldt or .ies
+    #[command(
+        after_help = "The scene must be open: only light that leaves it counts. C90 lies along +x of the
+project, γ = 0 points down. A housing is geometry of the project's CAD file; luminaires keep the
+intensities of their files inside it. Initial flux.
+
+Examples:
+  gershun lamp far-field cove --out cove.ldt
+  gershun lamp far-field pendant --group up --out up.ies --gamma-step 2.5 --blocks 256"
+    )]
+    FarField(FarFieldArgs),
+}
+
+/// Arguments of `lamp far-field`.
+#[derive(clap::Args, Debug)]
+pub struct FarFieldArgs {
+    /// project.toml or its folder
+    pub project: PathBuf,
+    /// Only luminaires of this group; may be given several times
+    #[arg(long, value_name = "NAME")]
+    pub group: Vec<String>,
+    /// Light scene whose factors count [default: the first]
+    #[arg(long, value_name = "NAME")]
+    pub light_scene: Option<String>,
+    /// File to write, .ies or .ldt
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Step of C, degrees
+    #[arg(long, value_name = "DEG", default_value_t = 15.0)]
+    pub c_step: f64,
+    /// Step of γ, degrees
+    #[arg(long, value_name = "DEG", default_value_t = 5.0)]
+    pub gamma_step: f64,
+    /// Independent blocks: four times as many halve the error
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    pub blocks: u64,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// What is printed
+    #[arg(long, value_enum, default_value_t = InfoFormat::Human)]
+    pub format: InfoFormat,
+    /// Let the project name files outside its folder
+    #[arg(long)]
+    pub allow_outside: bool,
 }
 
 /// Output of `lamp info`.

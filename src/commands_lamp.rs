@@ -4,22 +4,25 @@
 use std::path::{Path, PathBuf};
 
 use gershun::lamp::convert::Target;
-use gershun::lamp::{self, RULES, Severity, rules};
+use gershun::lamp::{self, RULES, Severity, installed, rules};
 use gershun::photometry::Finding;
-use gershun::project::{is_same_file, read_photometry, suggestion};
+use gershun::project::{LoadOptions, is_same_file, load, read_photometry, suggestion};
+use gershun::report::words::Lang;
 use gershun::report::{lamp as report, write_file};
+use gershun::solve::far_field::{self, FarDemand};
 use rayon::prelude::*;
 
-use crate::args_lamp::{InfoFormat, Lamp, LintFormat, TableFormat};
+use crate::args_lamp::{FarFieldArgs, InfoFormat, Lamp, LintFormat, TableFormat};
 use crate::{BAD_INPUT, COMPLIES, FAILS, complain, say};
 
 pub fn run(command: &Lamp) -> u8 {
     match command {
-        Lamp::Info { files, format } => info(files, *format),
-        Lamp::Lint { files, format } => lint(files, *format),
+        Lamp::Info { files, format, lang } => info(files, *format, lang.lang()),
+        Lamp::Lint { files, format, lang } => lint(files, *format, lang.lang()),
         Lamp::UgrTable { files, shr, format } => ugr_table(files, *shr, *format),
         Lamp::Polar { file, out } => polar(file, out.as_deref()).unwrap_or_else(|error| complain(&error)),
         Lamp::Convert { input, output } => convert(input, output).unwrap_or_else(|error| complain(&error)),
+        Lamp::FarField(args) => far_field(args).unwrap_or_else(|error| complain(&error)),
     }
 }
 
@@ -49,20 +52,20 @@ fn print(text: Result<String, gershun::report::ReportError>) -> u8 {
     }
 }
 
-fn info(files: &[PathBuf], format: InfoFormat) -> u8 {
+fn info(files: &[PathBuf], format: InfoFormat, lang: Lang) -> u8 {
     let (batch, opened) = read_all(files);
     let printed = print(match format {
-        InfoFormat::Human => Ok(report::info_text(&batch)),
+        InfoFormat::Human => Ok(report::info_text(&batch, lang)),
         InfoFormat::Json => report::info_json(&batch),
     });
     let unreadable = batch.iter().any(|file| file.read.is_err());
     opened.max(printed).max(if unreadable { BAD_INPUT } else { COMPLIES })
 }
 
-fn lint(files: &[PathBuf], format: LintFormat) -> u8 {
+fn lint(files: &[PathBuf], format: LintFormat, lang: Lang) -> u8 {
     let (batch, opened) = read_all(files);
     let printed = print(match format {
-        LintFormat::Human => Ok(report::lint_human(&batch)),
+        LintFormat::Human => Ok(report::lint_human(&batch, lang)),
         LintFormat::Json => report::lint_json(&batch),
         LintFormat::Sarif => Ok(report::lint_sarif(&batch)),
     });
@@ -130,10 +133,7 @@ fn polar(file: &Path, out: Option<&Path>) -> Result<u8, String> {
 }
 
 fn convert(input: &Path, output: &Path) -> Result<u8, String> {
-    let extension = output.extension().unwrap_or_default().to_string_lossy();
-    let target = Target::of_extension(&extension).ok_or_else(|| {
-        format!("{}: unknown format \".{extension}\"\n  hint: name a file .ies or .ldt", output.display())
-    })?;
+    let target = target_of(output)?;
     if is_same_file(input, output) {
         return Err(format!("{} would replace itself\n  hint: name another file", input.display()));
     }
@@ -143,6 +143,71 @@ fn convert(input: &Path, output: &Path) -> Result<u8, String> {
     write_file(output, &converted.bytes).map_err(|error| error.to_string())?;
     let told: Vec<String> = converted.dropped.iter().map(|what| format!("dropped: {what}\n")).collect();
     Ok(say(&format!("{}\n{}", output.display(), told.concat())))
+}
+
+/// Steps of angle that a table may have, degrees.
+const STEPS_DEG: std::ops::RangeInclusive<f64> = 0.5..=45.0;
+
+fn far_field(args: &FarFieldArgs) -> Result<u8, String> {
+    for (name, step, whole) in [("--c-step", args.c_step, 360.0), ("--gamma-step", args.gamma_step, 180.0)] {
+        let steps = whole / step;
+        if !STEPS_DEG.contains(&step) || (steps - steps.round()).abs() > 1e-9 {
+            let (least, most) = (STEPS_DEG.start(), STEPS_DEG.end());
+            return Err(format!(
+                "{name} {step}: needs {least} to {most}, and a whole number of steps in {whole}°"
+            ));
+        }
+    }
+    if args.blocks < 32 {
+        return Err(format!("--blocks {}: an interval needs at least 32", args.blocks));
+    }
+    let target = match &args.out {
+        Some(out) => Some((out, target_of(out)?)),
+        None => None,
+    };
+    let options = LoadOptions { allow_outside: args.allow_outside, ..LoadOptions::default() };
+    let project = load(&args.project, &options).map_err(|diagnostics| {
+        diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
+    })?;
+    let chosen = installed::choose(&project, &args.group, args.light_scene.as_deref())
+        .map_err(|error| format!("{}: {error}", args.project.display()))?;
+    let (azimuths_deg, gammas_deg) = far_field::axes(args.c_step, args.gamma_step);
+    let demand = FarDemand {
+        luminaires: chosen.luminaires.clone(),
+        azimuths_deg,
+        gammas_deg,
+        particles: 1000,
+        directions: 64,
+        opening_points: 4,
+        blocks: args.blocks,
+        seed: args.seed,
+    };
+    let field = far_field::far_field(&chosen.world.scene, &demand);
+    let name = [project.info.name.as_str(), &args.group.join(" ")].join(" ");
+    let photometry = installed::photometry(&field, &chosen, name.trim()).ok_or_else(|| {
+        format!(
+            "{}: no light leaves the scene\n  hint: the far field is that of luminaires seen from outside; leave the \
+             room's walls out of the CAD file",
+            args.project.display()
+        )
+    })?;
+    let mut text = String::new();
+    if let Some((out, target)) = target {
+        let converted = lamp::convert::convert(&photometry, target).map_err(|error| error.to_string())?;
+        write_file(out, &converted.bytes).map_err(|error| error.to_string())?;
+        text.push_str(&format!("{}\n", out.display()));
+    }
+    Ok(match args.format {
+        InfoFormat::Human => say(&(text + &report::far_field_text(&field))),
+        InfoFormat::Json => print(report::far_field_json(&field)),
+    })
+}
+
+fn target_of(output: &Path) -> Result<Target, String> {
+    let extension = output.extension().unwrap_or_default().to_string_lossy();
+    Target::of_extension(&extension).ok_or_else(|| {
+        format!("{}: unknown format \".{extension}\"\n  hint: name a file .ies or .ldt", output.display())
+    })
 }
 
 /// The explanation of a finding's code.

@@ -17,7 +17,7 @@ use crate::luminaire::Luminaire;
 use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
-pub use direct::{TOLERANCE, unshadowed};
+pub use direct::{AS_POINT, TOLERANCE, integrated, unshadowed};
 pub use images::Mirror;
 pub use seen::{Seen, seen_from};
 

@@ -41,6 +41,7 @@ fn photometric_files() {
         "entities.gldf",
         "huge.ies",
         "subnormal.ies",
+        "tm33_hole.xml",
         "truncated.gldf",
     ];
     for path in corpus("photometry") {
@@ -56,7 +57,7 @@ fn photometric_files() {
                 let _ = (convert(&lamp.photometry, Target::Ies), convert(&lamp.photometry, Target::Ldt));
             }
             let batch = [gershun::report::lamp::Batch { file: name.clone(), read: Ok(lamps) }];
-            let _ = gershun::report::lamp::info_text(&batch);
+            let _ = gershun::report::lamp::info_text(&batch, gershun::report::words::Lang::En);
             gershun::report::lamp::info_json(&batch).expect("figures are numbers");
         });
     }

@@ -48,6 +48,7 @@ fn info_for_machines() {
         "i_max_cd",
         "opening",
         "symmetry",
+        "outdoor",
         "findings",
     ];
     for entry in &list {

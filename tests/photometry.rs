@@ -144,7 +144,7 @@ fn round_trip_keeps_every_intensity() {
         };
         let back = match first.format {
             Format::Eulumdat => written(&written(&first, Target::Ies), Target::Ldt),
-            Format::Lm63 { .. } => written(&written(&first, Target::Ldt), Target::Ies),
+            Format::Lm63 { .. } | Format::Tm33 => written(&written(&first, Target::Ldt), Target::Ies),
         };
         let (azimuths, gammas) = first.distribution.grid().expect("a table");
         for azimuth in azimuths {
@@ -229,12 +229,24 @@ fn openings_of_the_code_samples() {
         assert_eq!(lamp.opening, opening, "{name}");
         assert!(!approximated(&lamp), "{name}");
     }
-    for shape in ["ellipse_opening", "ellipsoid_opening", "horizontal_cylinder_opening"] {
-        for along in ["length", "width"] {
-            assert!(approximated(&read(&format!("{shape}_along_{along}.ies"))), "{shape} along {along}");
-        }
+    let (length_m, width_m, height_m) = (0.34, 0.12, 0.56);
+    let tube = |across| Opening::Tube { length_m: 0.12, width_m: 0.34, height_m: 0.34, across };
+    let curved = [
+        ("ellipse_opening_along_length.ies", Opening::Ellipse { length_m, width_m, height_m }),
+        ("ellipse_opening_along_width.ies", Opening::Ellipse { length_m, width_m, height_m }),
+        ("horizontal_cylinder_opening_along_length.ies", tube(false)),
+        ("horizontal_cylinder_opening_along_width.ies", tube(true)),
+        ("sphere_opening.ies", Opening::Ellipsoid { length_m: width_m, width_m, height_m: width_m }),
+    ];
+    for (name, opening) in curved {
+        let lamp = read(name);
+        assert_eq!(lamp.opening, opening, "{name}");
+        assert!(!approximated(&lamp), "{name}");
     }
-    assert!(approximated(&read("sphere_opening.ies")));
+    for along in ["length", "width"] {
+        let lamp = read(&format!("ellipsoid_opening_along_{along}.ies"));
+        assert!(matches!(lamp.opening, Opening::Ellipsoid { .. }), "{:?}", lamp.opening);
+    }
     let feet = read("imperial_units.ies").opening.area_m2();
     let metres = read("metric_units.ies").opening.area_m2();
     assert!(off(feet, metres * 0.3048 * 0.3048) < 1e-12);

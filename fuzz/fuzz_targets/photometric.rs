@@ -16,6 +16,6 @@ pub fn examine(bytes: &[u8]) {
         }
     }
     let batch = vec![gershun::report::lamp::Batch { file: "fuzz".into(), read: Ok(lamps) }];
-    let _ = gershun::report::lamp::info_text(&batch);
+    let _ = gershun::report::lamp::info_text(&batch, gershun::report::words::Lang::En);
     gershun::report::lamp::info_json(&batch).expect("figures are JSON numbers");
 }

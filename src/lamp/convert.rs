@@ -129,6 +129,7 @@ fn dropped(before: &Photometry, after: &Photometry, target: Target) -> Vec<Strin
         (Format::Eulumdat, Target::Ldt) => {
             "size of the luminaire, numbers, date, lamp names, colour, further lamp sets, tilt; direct ratios become 0"
         }
+        (Format::Tm33, _) => "spectra, colour other than R_a, equipment, custom data, comments",
         (Format::Lm63 { .. }, _) => {
             "keywords other than the names, tilt data, lamp count; all factors become 1"
         }

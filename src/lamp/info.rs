@@ -1,7 +1,7 @@
 //! The figures of a photometric file. LOR is what the file *states* where it states one; what the
 //! intensities add up to stands beside it.
 
-use super::{Lamp, beam, c_deg, flux, luminance, spacing};
+use super::{Lamp, beam, c_deg, flux, luminance, outdoor, spacing};
 use crate::photometry::{Format, IntensityDistribution, Opening, Symmetry};
 use crate::units::Undefined;
 
@@ -51,6 +51,8 @@ pub struct Info {
     pub luminances: Vec<luminance::Row>,
     /// Spacing over mounting height.
     pub spacing: spacing::Spacing,
+    /// Classes of road and area luminaires.
+    pub outdoor: outdoor::Outdoor,
 }
 
 /// An intensity and its direction.
@@ -96,6 +98,7 @@ pub fn info(lamp: &Lamp) -> Info {
         flux_code: flux::cie_code(distribution, lor),
         luminances: luminance::table(photometry, symmetry),
         spacing: spacing::criterion(distribution),
+        outdoor: outdoor::outdoor(photometry, symmetry),
     }
 }
 

@@ -144,7 +144,7 @@ fn line_ends(bytes: &[u8], format: Format) -> Option<Finding> {
     }
     let usual = match format {
         Format::Lm63 { .. } => ", as LM-63 asks for",
-        Format::Eulumdat => "",
+        Format::Eulumdat | Format::Tm33 => "",
     };
     let consequence = "no effect here; readers that keep the CR may misread the last number of a line";
     Some(Finding::new("crlf", None, format!("lines end in CR LF{usual}"), consequence))

@@ -255,8 +255,9 @@ pub const RULES: &[Rule] = &[
     warning(
         "opening-approximated",
         "The luminous opening is replaced by the nearest known shape.",
-        "Ellipses become discs, spheres and ellipsoids upright cylinders, lying cylinders boxes, upright areas \
-         edges. The seen area is kept in the main directions; illuminance does not depend on it.",
+        "Sizes that are no shape of LM-63 (a line, a negative height) become the nearest shape, and TM-33's \
+         luminaire stands for its opening. Luminance and UGR follow the shape that was taken; illuminance does not \
+         depend on it beyond about ten times its size.",
     ),
     warning(
         "mixed-line-ends",
@@ -314,6 +315,7 @@ mod tests {
             include_str!("../photometry/ies_opening.rs"),
             include_str!("../photometry/ldt.rs"),
             include_str!("../photometry/ldt_head.rs"),
+            include_str!("../photometry/tm33.rs"),
         ];
         for rule in RULES {
             let quoted = format!("\"{}\"", rule.code);

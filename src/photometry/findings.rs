@@ -17,7 +17,7 @@ fn flux(photometry: &Photometry) -> Option<Finding> {
     let deviation = integrated / rated - 1.0;
     let odd = match photometry.format {
         Format::Eulumdat => deviation.abs(),
-        Format::Lm63 { .. } => deviation,
+        Format::Lm63 { .. } | Format::Tm33 => deviation,
     };
     let message = format!("rated {rated:.0} lm, integrates to {integrated:.0} lm");
     let consequence = format!(

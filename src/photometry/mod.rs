@@ -11,6 +11,7 @@ mod emission;
 mod face;
 mod findings;
 mod gldf;
+mod grid;
 mod ies;
 mod ies_goniometer;
 mod ies_head;
@@ -25,9 +26,11 @@ mod planes;
 mod symmetry;
 mod table;
 mod text;
+mod tm33;
 mod written;
 
-pub use distribution::{DistributionError, IntensityDistribution};
+pub use distribution::IntensityDistribution;
+pub use grid::DistributionError;
 pub use ies::Lm63Version;
 pub use ies_write::to_ies;
 pub use ldt_write::to_ldt;
@@ -69,6 +72,8 @@ pub enum Format {
     },
     /// EULUMDAT, `.ldt`.
     Eulumdat,
+    /// ANSI/IES TM-33, XML.
+    Tm33,
 }
 
 /// An oddity of a file and what follows from it.
@@ -165,7 +170,7 @@ pub fn unpack(bytes: &[u8], file_name: &str) -> Result<Vec<Part>, PhotometryErro
     Ok(parts.into_iter().map(part).collect())
 }
 
-/// Reads LM-63, EULUMDAT or a GLDF container with one photometry, recognised by content;
+/// Reads LM-63, EULUMDAT, TM-33 or a GLDF container with one photometry, recognised by content;
 /// `file_name` appears in messages only.
 ///
 /// # Errors
@@ -206,12 +211,14 @@ fn parse_content(bytes: &[u8]) -> Result<Photometry, Fault> {
         return Err(Fault::new(1, "this is a binary file", hint));
     }
     let lines: Vec<&str> = text.lines().collect();
-    let mut photometry = if ies::recognises(&lines) {
+    let mut photometry = if tm33::recognises(&text) {
+        tm33::read(&text)?
+    } else if ies::recognises(&lines) {
         ies::read(&lines)?
     } else if ldt::recognises(&lines) {
         ldt::read(&lines)?
     } else {
-        let message = "neither LM-63 (no TILT= line) nor EULUMDAT (line 3 is no symmetry 0 … 4)";
+        let message = "neither LM-63 (no TILT= line) nor EULUMDAT (line 3 is no symmetry 0 … 4) nor TM-33 (no XML of it)";
         return Err(Fault::new(3.min(lines.len()), message, EXPORT_AGAIN));
     };
     if !(photometry.distribution.flux().0 > 0.0) {
@@ -252,7 +259,7 @@ mod tests {
     /// Catches: an index out of range or an overflow on truncated or flipped input.
     #[test]
     fn damaged_files_never_panic() {
-        for text in [ies::tests::SAMPLE.to_owned(), ldt::tests::sample()] {
+        for text in [ies::tests::SAMPLE.to_owned(), ldt::tests::sample(), tm33::tests::SAMPLE.to_owned()] {
             let whole = text.as_bytes();
             for cut in (0..whole.len()).step_by(37) {
                 let _ = parse(&whole[..cut], "cut");

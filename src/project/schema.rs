@@ -70,6 +70,7 @@ pub struct ProjectSection {
 #[serde(deny_unknown_fields)]
 pub struct SceneSection {
     pub file: Option<At<String>>,
+    pub lights: Option<At<bool>>,
     #[serde(rename = "box")]
     pub room: Option<At<BoxSection>>,
 }

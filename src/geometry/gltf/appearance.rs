@@ -142,14 +142,8 @@ pub(super) fn biases(root: &json::Root, written: &Written, unused: &[&str]) -> V
     });
     let morphs =
         root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| primitive.targets.is_some());
-    let lights =
-        root.extensions_used.iter().any(|name| name == "KHR_lights_punctual" || name == "EXT_lights_ies");
     if morphs {
         biases.push("morph targets of the glTF file are ignored".to_owned());
-    }
-    if lights {
-        biases
-            .push("light sources of the glTF file are ignored; luminaires come from the project".to_owned());
     }
     biases.extend(unused.iter().map(|&bias| bias.to_owned()));
     biases

@@ -5,6 +5,7 @@
 mod accessor;
 mod appearance;
 mod container;
+mod lights;
 mod walk;
 
 use glam::DVec3;
@@ -12,6 +13,7 @@ use gltf::json;
 
 use super::mesh::Mesh;
 use accessor::Buffers;
+pub use lights::{ImportedLight, LightKind};
 use walk::Walk;
 
 /// What an import yields.
@@ -23,6 +25,8 @@ pub struct Imported {
     pub materials: Vec<ImportedMaterial>,
     /// Nodes of the scene, parents first.
     pub nodes: Vec<ImportedNode>,
+    /// Light sources at the nodes of the scene.
+    pub lights: Vec<ImportedLight>,
     /// Triangles without area, which were dropped.
     pub degenerate: usize,
     /// What was ignored, one sentence each.
@@ -151,6 +155,7 @@ pub fn import(
     let (text, bin) = container::split(document)?;
     let fault = |error: json::Error| GltfError::Json(error.to_string());
     let mut written: json::Value = json::deserialize::from_slice(text).map_err(fault)?;
+    let lights = lights::Lights::of(&written);
     // A mistake in what is ignored anyway must not keep the geometry from being read.
     let unused = appearance::take_unused(&mut written);
     let base_colours = appearance::Written::of(&written).map_err(fault)?;
@@ -170,7 +175,7 @@ pub fn import(
         ..Imported::default()
     };
     let buffers = Buffers::new(&root, bin, read);
-    Walk::new(&root, buffers).run(&mut imported)?;
+    Walk::new(&root, buffers, &lights).run(&mut imported)?;
     Ok(imported)
 }
 

@@ -7,6 +7,7 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 use super::accessor::Buffers;
+use super::lights::Lights;
 use super::{GltfError, Imported, ImportedMaterial, ImportedNode, is_degenerate};
 use crate::geometry::mesh::Triangle;
 
@@ -18,6 +19,7 @@ const MAX_DEPTH: usize = 256;
 /// State of the walk.
 pub(super) struct Walk<'a> {
     root: &'a json::Root,
+    lights: &'a Lights,
     buffers: Buffers<'a>,
     default_material: Option<usize>,
     skipped: usize,
@@ -27,9 +29,10 @@ pub(super) struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     /// Nothing visited yet.
-    pub(super) fn new(root: &'a json::Root, buffers: Buffers<'a>) -> Self {
+    pub(super) fn new(root: &'a json::Root, buffers: Buffers<'a>, lights: &'a Lights) -> Self {
         Self {
             root,
+            lights,
             buffers,
             default_material: None,
             skipped: 0,
@@ -85,6 +88,7 @@ impl<'a> Walk<'a> {
                 return Err(GltfError::Transform(name));
             }
             let path = parent.map_or(name.clone(), |p| format!("{}/{name}", out.nodes[p].path));
+            out.lights.extend(self.lights.at(index, &name, world_from_node));
             let own = out.nodes.len();
             out.nodes.push(ImportedNode { name, path, parent, surfaces: Vec::new() });
             if let Some(mesh) = node.mesh {

@@ -38,7 +38,7 @@ pub fn draft(
             return None;
         }
     };
-    let Imported { mesh, materials, nodes, biases, .. } = imported;
+    let Imported { mesh, materials, nodes, lights, biases, .. } = imported;
     for bias in biases {
         context.note(format!("{}: {bias}", path.get_ref()));
     }
@@ -63,6 +63,7 @@ pub fn draft(
     }
     draft.mesh = mesh;
     draft.nodes = nodes;
+    draft.lights = lights;
     let Some((low, high)) = triangle_bounds(&draft.mesh, None) else {
         let message = format!("{} has no triangles", path.get_ref());
         context.error(&path.span(), message, "");

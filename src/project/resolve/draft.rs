@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use crate::geometry::gltf::ImportedNode;
+use crate::geometry::gltf::{ImportedLight, ImportedNode};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::polygon;
 use crate::luminaire::Luminaire;
@@ -26,6 +26,8 @@ pub struct Draft {
     pub mesh: Mesh,
     pub materials: Vec<Material>,
     pub nodes: Vec<ImportedNode>,
+    /// Light sources of its CAD file.
+    pub lights: Vec<ImportedLight>,
     pub rooms: Vec<Room>,
     /// Maintenance of each room.
     pub factors: Vec<RoomFactors>,
@@ -63,6 +65,7 @@ impl Draft {
             mesh: Mesh::default(),
             materials: Vec::new(),
             nodes: Vec::new(),
+            lights: Vec::new(),
             rooms: Vec::new(),
             factors: Vec::new(),
             luminaires: Vec::new(),

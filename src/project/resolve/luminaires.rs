@@ -48,6 +48,79 @@ impl Kind {
     }
 }
 
+impl Kind {
+    /// The type of a light source of a CAD file: a point.
+    pub fn of_light(name: &str, description: &str, distribution: IntensityDistribution) -> Self {
+        let source = Source {
+            distribution,
+            opening: Opening::Point,
+            description: description.to_owned(),
+            rated_flux_lm: None,
+            power_w: None,
+            declared_ra: None,
+            c0_azimuth_deg: 0.0,
+        };
+        Self::of_source(name, source, String::new())
+    }
+
+    fn of_source(name: &str, source: Source, file: String) -> Self {
+        let base = LuminaireType {
+            name: name.to_owned(),
+            flux_lm: source.distribution.flux().0,
+            maintenance: Maintenance::NEW,
+            declared_ra: source.declared_ra,
+            description: source.description,
+            distribution: source.distribution,
+            opening: source.opening,
+            rated_flux_lm: source.rated_flux_lm,
+            power_w: source.power_w,
+            c0_azimuth_deg: source.c0_azimuth_deg,
+            file,
+        };
+        Self {
+            name: name.to_owned(),
+            base: Some(base),
+            own_maintenance: false,
+            body: Vec::new(),
+            made: Vec::new(),
+        }
+    }
+}
+
+/// The type of a light source of a CAD file that names a photometric file.
+pub fn profile(
+    name: &str,
+    label: &str,
+    uri: &str,
+    factor: f64,
+    cad: &At<String>,
+    wanted: &At<bool>,
+    context: &mut Context,
+) -> Option<Kind> {
+    let folder = cad.get_ref().rfind(['/', '\\']).map_or("", |at| &cad.get_ref()[..=at]);
+    let file = format!("{folder}{uri}");
+    let bytes = match context.read_path(&file, SMALL_FILE) {
+        Ok(bytes) => bytes,
+        Err((message, hint)) => {
+            context.error(&wanted.span(), format!("{label}: {message}"), &hint);
+            return None;
+        }
+    };
+    let mut source = from_bytes(&bytes, &file, context)?;
+    source.distribution = source.distribution.scaled(factor);
+    if !source.distribution.is_rotationally_symmetric() {
+        context.note(format!(
+            "{label}: how its planes are turned about the beam is not settled by gershun; the 0° plane lies where \
+             `aim` without `rotate` puts it"
+        ));
+    }
+    if !(source.distribution.flux().0 > 0.0) {
+        context.note(format!("{label} is dark"));
+        return None;
+    }
+    Some(Kind::of_source(name, source, file))
+}
+
 /// Checks all entries and reads their files.
 pub fn kinds(file: &File, context: &mut Context) -> Vec<Kind> {
     let read = file.luminaires.iter().map(|(name, section)| Kind {
@@ -132,11 +205,15 @@ struct Source {
 
 fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
     let bytes = context.read(file, SMALL_FILE)?;
-    match photometry::parse(&bytes, file.get_ref()) {
+    from_bytes(&bytes, file.get_ref(), context)
+}
+
+fn from_bytes(bytes: &[u8], file: &str, context: &mut Context) -> Option<Source> {
+    match photometry::parse(bytes, file) {
         Ok(photometry) => {
             for finding in &photometry.findings {
                 let line = finding.line.map_or(String::new(), |line| format!(":{line}"));
-                context.note(format!("{}{line}: {finding}", file.get_ref()));
+                context.note(format!("{file}{line}: {finding}"));
             }
             Some(Source {
                 distribution: photometry.distribution,
@@ -147,12 +224,12 @@ fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
                 declared_ra: photometry.colour_rendering,
                 c0_azimuth_deg: match photometry.format {
                     photometry::Format::Eulumdat => -90.0,
-                    photometry::Format::Lm63 { .. } => 0.0,
+                    photometry::Format::Lm63 { .. } | photometry::Format::Tm33 => 0.0,
                 },
             })
         }
         Err(error) => {
-            let text = String::from_utf8_lossy(&bytes);
+            let text = String::from_utf8_lossy(bytes);
             let first = text.lines().nth(error.line.saturating_sub(1));
             let source_line: String =
                 first.unwrap_or_default().chars().filter(|c| !c.is_control()).take(120).collect();

@@ -6,6 +6,7 @@ mod areas;
 mod cad;
 mod draft;
 mod furniture;
+mod lights;
 mod lists;
 mod luminaires;
 mod materials;
@@ -44,6 +45,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     }
     let kinds = luminaires::kinds(file, context);
     places::add(file, kinds, &mut drafts, context);
+    lights::add(file.scene.as_ref(), &mut drafts, context);
     let light_scenes = settings::light_scenes(file, &drafts, context);
     areas::add(file, &mut drafts, &light_scenes, context);
     viewpoints::add(file, &mut drafts, &light_scenes, context);

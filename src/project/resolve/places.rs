@@ -20,11 +20,11 @@ const MAX_PLACED: usize = 100_000;
 const COLUMNS: &[&str] = &["luminaire", "x", "y", "z", "aim_x", "aim_y", "aim_z", "rotate", "dim", "group"];
 
 /// How a luminaire hangs, apart from where.
-struct Hanging {
-    kind: usize,
-    group: String,
-    rotate_deg: f64,
-    dim: f64,
+pub(super) struct Hanging {
+    pub(super) kind: usize,
+    pub(super) group: String,
+    pub(super) rotate_deg: f64,
+    pub(super) dim: f64,
 }
 
 /// Hangs all luminaires.
@@ -226,7 +226,8 @@ fn read_row(
     Ok((hanging, point, aim))
 }
 
-fn hang(
+/// Hangs one luminaire in the room where it is.
+pub(super) fn hang(
     hanging: &Hanging,
     kinds: &mut [Kind],
     point: DVec3,

@@ -1,11 +1,14 @@
 //! `lamp info --format json`: one object per luminaire, full precision. A file that cannot be read
 //! has the same keys, all null but its name and one finding.
 
+use std::collections::BTreeMap;
+
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::super::ReportError;
 use super::{Batch, format_name};
+use crate::lamp::outdoor::{Outdoor, ZONES};
 use crate::lamp::{self, Lamp, rules};
 use crate::photometry::{Finding, Opening};
 
@@ -21,7 +24,21 @@ struct Entry<'a> {
     i_max_cd: Option<f64>,
     opening: Option<Shape>,
     symmetry: Option<&'static str>,
+    outdoor: Option<Classes>,
     findings: Vec<Found<'a>>,
+}
+
+/// Classes of road and area luminaires; `null` is a class that is not met or a value that is undefined.
+#[derive(Serialize)]
+struct Classes {
+    g_star: Option<String>,
+    g_cd_per_klm_from_70_80_90_95_deg: [f64; 4],
+    glare_index_cd_per_m: Option<f64>,
+    d_class: Option<String>,
+    bug: String,
+    bug_zones_lm: BTreeMap<&'static str, f64>,
+    street_c_deg: f64,
+    limits: &'static str,
 }
 
 struct Shape(Opening);
@@ -90,6 +107,22 @@ fn entry(luminaire: &Lamp) -> Entry<'_> {
         i_max_cd: Some(info.i_max.cd),
         opening: Some(Shape(info.opening)),
         symmetry: Some(info.symmetry.key()),
+        outdoor: Some(classes(&info.outdoor)),
         findings: luminaire.findings.iter().map(Found::from).collect(),
+    }
+}
+
+fn classes(outdoor: &Outdoor) -> Classes {
+    let [b, u, g] = outdoor.bug.rating;
+    let index = outdoor.glare_index.as_ref().ok();
+    Classes {
+        g_star: (outdoor.g_star > 0).then(|| format!("G*{}", outdoor.g_star)),
+        g_cd_per_klm_from_70_80_90_95_deg: outdoor.g_cd_per_klm,
+        glare_index_cd_per_m: index.map(|(index, _)| *index),
+        d_class: index.map(|(_, class)| format!("D{class}")),
+        bug: format!("B{b} U{u} G{g}"),
+        bug_zones_lm: ZONES.into_iter().zip(outdoor.bug.zones_lm).collect(),
+        street_c_deg: lamp::c_deg(outdoor.bug.front_azimuth_deg),
+        limits: "unverified",
     }
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::super::ReportError;
+use super::super::words::{Lang, lamp_word};
 use super::super::xml::{printable, put};
 use super::Batch;
 use super::json::Found;
@@ -24,43 +25,59 @@ fn findings(batch: &[Batch]) -> impl Iterator<Item = (&str, &Finding)> {
 }
 
 /// One paragraph per finding, then a line that counts them.
-pub fn human(batch: &[Batch]) -> String {
+pub fn human(batch: &[Batch], lang: Lang) -> String {
+    let say = |english: &'static str| lamp_word(lang, english);
     let mut text = String::new();
     let mut counts = [0; 3];
     for (file, finding) in findings(batch) {
         let severity = rules::severity(finding.code);
         counts[severity as usize] += 1;
-        text.push_str(&one(file, finding, severity));
+        text.push_str(&one(file, finding, severity, lang));
     }
     let [notes, warnings, errors] = counts;
-    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    // Russian names the number behind a colon, which needs no plural forms.
+    let counted = |n: usize, one: &str, many: &'static str| match lang {
+        Lang::En => format!("{n} {}", if n == 1 { one } else { many }),
+        Lang::Ru => format!("{many}: {n}"),
+    };
     put(
         &mut text,
         format_args!(
             "{}: {}, {}, {}\n",
-            counted(batch.len(), "file"),
-            counted(errors, "error"),
-            counted(warnings, "warning"),
-            counted(notes, "note")
+            counted(batch.len(), "file", say("files")),
+            counted(errors, "error", say("errors")),
+            counted(warnings, "warning", say("warnings")),
+            counted(notes, "note", say("notes"))
         ),
     );
     if errors + warnings + notes > 0 {
-        text.push_str("`gershun explain CODE` says more about a code\n");
+        text.push_str(say("`gershun explain CODE` says more about a code"));
+        text.push('\n');
     }
     text
 }
 
 /// `file:line: severity[code]: message` and what follows from it.
-pub(super) fn one(file: &str, finding: &Finding, severity: Severity) -> String {
+pub(super) fn one(file: &str, finding: &Finding, severity: Severity, lang: Lang) -> String {
     let line = finding.line.map_or(String::new(), |line| format!(":{line}"));
     format!(
         "{}{line}: {}[{}]: {}\n  = {}\n",
         printable(file),
-        severity.key(),
+        severity_word(severity, lang),
         finding.code,
         printable(&finding.message),
         printable(&finding.consequence)
     )
+}
+
+/// `error`, `warning`, `note`.
+pub(super) fn severity_word(severity: Severity, lang: Lang) -> &'static str {
+    let say = |english: &'static str| lamp_word(lang, english);
+    match severity {
+        Severity::Note => say("note"),
+        Severity::Warning => say("warning"),
+        Severity::Error => say("error"),
+    }
 }
 
 /// An array of { file, code, severity, line, message, consequence }.
@@ -138,7 +155,7 @@ mod tests {
     /// Catches: an unreadable file left out of a format, a path that is no URI, counts mixed up.
     #[test]
     fn an_unreadable_file_is_an_error_everywhere() {
-        let text = human(&batch());
+        let text = human(&batch(), Lang::En);
         assert!(
             text.starts_with("a b/ü.ldt:7: error[angle-order]: γ falls\n  = refused\n1 file: 1 error, 0"),
             "{text}"

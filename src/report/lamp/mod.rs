@@ -1,11 +1,13 @@
 //! What `gershun lamp` prints: text for people in English, JSON, SARIF and CSV for machines.
 
+mod far_field;
 mod json;
 mod lint;
 mod polar;
 mod text;
 mod ugr;
 
+pub use far_field::{json as far_field_json, text as far_field_text};
 pub use json::info as info_json;
 pub use lint::{explanation, human as lint_human, json as lint_json, sarif as lint_sarif};
 pub use polar::{diagram, polar};
@@ -28,6 +30,7 @@ pub struct Batch {
 fn format_name(format: Format) -> &'static str {
     match format {
         Format::Eulumdat => "EULUMDAT",
+        Format::Tm33 => "TM-33",
         Format::Lm63 { version } => match version {
             Lm63Version::Y1986 => "LM-63-1986",
             Lm63Version::Y1991 => "LM-63-1991",

@@ -2,232 +2,335 @@
 //! an EULUMDAT file of one luminaire read alike.
 
 use super::super::number::{figures, fixed};
-use super::super::words::Lang;
+use super::super::words::{Lang, lamp_word};
 use super::super::xml::{printable, put};
 use super::{Batch, format_name, lint};
 use crate::lamp::info::{Info, info};
 use crate::lamp::luminance::GAMMAS_DEG;
-use crate::lamp::{Lamp, rules};
+use crate::lamp::outdoor::G_GAMMAS_DEG;
+use crate::lamp::{Lamp, c_deg, rules};
 use crate::photometry::{Format, Opening, Symmetry};
 use crate::units::Undefined;
 
-const LANG: Lang = Lang::En;
-
 /// All luminaires, one block each.
-pub fn info_text(batch: &[Batch]) -> String {
+pub fn info_text(batch: &[Batch], lang: Lang) -> String {
     let block = |file: &Batch| match &file.read {
-        Ok(lamps) => lamps.iter().map(block).collect::<Vec<_>>().join("\n"),
-        Err(finding) => lint::one(&file.file, finding, rules::severity(finding.code)),
+        Ok(lamps) => lamps.iter().map(|lamp| block(lamp, lang)).collect::<Vec<_>>().join("\n"),
+        Err(finding) => lint::one(&file.file, finding, rules::severity(finding.code), lang),
     };
     batch.iter().map(block).collect::<Vec<_>>().join("\n")
 }
 
-fn block(lamp: &Lamp) -> String {
+fn block(lamp: &Lamp, lang: Lang) -> String {
     let info = info(lamp);
+    let page = Page { lang, info: &info };
+    let say = |english: &'static str| lamp_word(lang, english);
     let mut text = format!("{}\n", printable(&lamp.file));
-    let mut row = |name: &str, value: String| put(&mut text, format_args!("  {name:<14}{value}\n"));
-    row("luminaire", printable(&info.description));
-    row("format", format(info.format));
-    row("flux", flux(&info));
-    row("output ratio", output_ratio(&info));
-    row("power", power(&info));
-    row(
-        "I_max",
-        format!(
-            "{} cd at C{} γ {}° ({} cd/klm)",
-            figures(LANG, info.i_max.cd, 4),
-            info.i_max.c_deg,
-            info.i_max.gamma_deg,
-            figures(LANG, 1000.0 * info.i_max.cd / info.flux_integrated_lm, 3)
-        ),
-    );
-    row("opening", opening(info.opening));
-    row("symmetry", symmetry(info.symmetry).to_owned());
-    row("beam (50 %)", planes(&info.beam_deg));
-    row("field (10 %)", planes(&info.field_deg));
-    row("CIE flux code", flux_code(&info));
-    row("spacing S/h", spacing(&info));
-    zones(&info, &mut text);
-    luminances(&info, &mut text);
+    let mut row = |name: &str, value: String| put(&mut text, format_args!("  {name:<15}{value}\n"));
+    row(say("luminaire"), printable(&info.description));
+    row(say("format"), page.format());
+    row(say("flux"), page.flux());
+    row(say("output ratio"), page.output_ratio());
+    row(say("power"), page.power());
+    row("I_max", page.largest());
+    row(say("opening"), page.opening());
+    row(say("symmetry"), page.symmetry().to_owned());
+    row(say("beam (50 %)"), page.planes(&info.beam_deg));
+    row(say("field (10 %)"), page.planes(&info.field_deg));
+    row(say("CIE flux code"), page.flux_code());
+    row(say("spacing S/h"), page.spacing());
+    row(say("intensity"), page.intensity_class());
+    row(say("glare index"), page.glare_index());
+    row(say("BUG rating"), page.bug());
+    page.zones(&mut text);
+    page.luminances(&mut text);
     if !lamp.findings.is_empty() {
-        text.push_str("  findings\n");
+        put(&mut text, format_args!("  {}\n", say("findings")));
     }
     for finding in &lamp.findings {
-        let line = finding.line.map_or(String::new(), |line| format!("line {line}, "));
-        let severity = rules::severity(finding.code).key();
+        let line = finding.line.map_or(String::new(), |line| format!("{} {line}, ", say("line")));
+        let severity = lint::severity_word(rules::severity(finding.code), lang);
         let (code, message) = (finding.code, printable(&finding.to_string()));
         put(&mut text, format_args!("    {severity}[{code}]: {line}{message}\n"));
     }
     text
 }
 
-fn format(format: Format) -> String {
-    let name = format_name(format);
-    match format {
-        Format::Eulumdat => name.to_owned(),
-        Format::Lm63 { .. } => format!("{name} (its 0° plane, along the length, is C90 here)"),
+/// The figures of one luminaire in one language.
+struct Page<'a> {
+    lang: Lang,
+    info: &'a Info,
+}
+
+impl Page<'_> {
+    fn say(&self, english: &'static str) -> &'static str {
+        lamp_word(self.lang, english)
     }
-}
 
-fn lumens(lm: f64) -> String {
-    if lm >= 100.0 { fixed(LANG, lm, 0) } else { figures(LANG, lm, 3) }
-}
-
-fn flux(info: &Info) -> String {
-    let rated = info.flux_rated_lm.map_or("none rated".to_owned(), |lm| format!("{} lm rated", lumens(lm)));
-    format!(
-        "{} lm by exact integration · {} lm by the zonal rule · {rated}",
-        lumens(info.flux_integrated_lm),
-        lumens(info.flux_zonal_lm)
-    )
-}
-
-fn output_ratio(info: &Info) -> String {
-    let percent = |part: f64| format!("{} %", fixed(LANG, 100.0 * part, 1));
-    let down = format!("{} of the flux down", percent(info.down_share));
-    let source = if info.format == Format::Eulumdat { " stated" } else { "" };
-    let lor = info.lor.map_or("LOR not stated".to_owned(), |lor| format!("LOR {}{source}", percent(lor)));
-    match (info.dlor, info.ulor) {
-        (Some(dlor), Some(ulor)) => {
-            format!("{lor} · DLOR {} · ULOR {} · {down}", percent(dlor), percent(ulor))
-        }
-        _ => format!("{lor} · {down}"),
+    fn lumens(&self, lm: f64) -> String {
+        if lm >= 100.0 { fixed(self.lang, lm, 0) } else { figures(self.lang, lm, 3) }
     }
-}
 
-fn power(info: &Info) -> String {
-    match (info.power_w, info.efficacy_lm_per_w) {
-        (Some(watts), Some(efficacy)) => {
-            format!("{} W · {} lm/W", figures(LANG, watts, 3), figures(LANG, efficacy, 3))
-        }
-        _ => "not stated".to_owned(),
+    fn percent(&self, part: f64) -> String {
+        format!("{} %", fixed(self.lang, 100.0 * part, 1))
     }
-}
 
-fn opening(opening: Opening) -> String {
-    let m = |size: f64| fixed(LANG, size, 3);
-    match opening {
-        Opening::Point => "none: a point".to_owned(),
-        Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
-            let sides = if side_x_m > 0.0 || side_y_m > 0.0 {
-                format!(", luminous sides {} m (ends), {} m (long sides)", m(side_x_m), m(side_y_m))
-            } else {
-                String::new()
-            };
-            format!("rectangle {} × {} m (length × width){sides}", m(length_m), m(width_m))
-        }
-        Opening::Sided { length_m, width_m, sides_m: [c90, c180, c270, c0] } => format!(
-            "rectangle {} × {} m (length × width), luminous sides C0 {} · C90 {} · C180 {} · C270 {} m",
-            m(length_m),
-            m(width_m),
-            m(c0),
-            m(c90),
-            m(c180),
-            m(c270)
-        ),
-        Opening::Disc { diameter_m, height_m } => {
-            let side =
-                if height_m > 0.0 { format!(", luminous height {} m", m(height_m)) } else { String::new() };
-            format!("disc ⌀ {} m{side}", m(diameter_m))
-        }
-        Opening::Ellipse { length_m, width_m, height_m } => {
-            let side =
-                if height_m > 0.0 { format!(", luminous height {} m", m(height_m)) } else { String::new() };
-            format!("ellipse {} × {} m (length × width){side}", m(length_m), m(width_m))
-        }
-        Opening::Ellipsoid { length_m, width_m, height_m } => {
-            if (length_m - width_m).abs().max((length_m - height_m).abs()) < 1e-9 {
-                return format!("sphere ⌀ {} m", m(length_m));
+    fn format(&self) -> String {
+        let name = format_name(self.info.format);
+        match self.info.format {
+            Format::Eulumdat => name.to_owned(),
+            Format::Lm63 { .. } | Format::Tm33 => {
+                format!("{name} ({})", self.say("its 0° plane, along the length, is C90 here"))
             }
-            format!(
-                "ellipsoid {} × {} × {} m (length × width × height)",
-                m(length_m),
-                m(width_m),
-                m(height_m)
-            )
-        }
-        Opening::Tube { length_m, width_m, height_m, across } => {
-            let way = if across { "across (along C0–C180)" } else { "along C90–C270" };
-            format!(
-                "lying cylinder, {} m {way}, ⌀ {} × {} m (level × upright)",
-                m(length_m),
-                m(width_m),
-                m(height_m)
-            )
-        }
-        Opening::Upright { width_m, height_m, across, round } => {
-            let shape = if round { "ellipse" } else { "rectangle" };
-            let faces = if across { "C0 and C180" } else { "C90 and C270" };
-            format!("upright {shape} {} × {} m (width × height) facing {faces}", m(width_m), m(height_m))
         }
     }
-}
 
-fn symmetry(symmetry: Symmetry) -> &'static str {
-    match symmetry {
-        Symmetry::Rotational => "about the vertical axis",
-        Symmetry::Quadrant => "about both planes",
-        Symmetry::AboutLength => "about C90–C270",
-        Symmetry::AboutWidth => "about C0–C180",
-        Symmetry::None => "none",
+    fn flux(&self) -> String {
+        let rated = self.info.flux_rated_lm.map_or_else(
+            || self.say("none rated").to_owned(),
+            |lm| format!("{} {}", self.lumens(lm), self.say("lm rated")),
+        );
+        format!(
+            "{} {} · {} {} · {rated}",
+            self.lumens(self.info.flux_integrated_lm),
+            self.say("lm by exact integration"),
+            self.lumens(self.info.flux_zonal_lm),
+            self.say("lm by the zonal rule")
+        )
+    }
+
+    fn output_ratio(&self) -> String {
+        let info = self.info;
+        let down = format!("{} {}", self.percent(info.down_share), self.say("of the flux down"));
+        let source = if info.format == Format::Eulumdat { self.say(" stated") } else { "" };
+        let lor = info.lor.map_or_else(
+            || self.say("LOR not stated").to_owned(),
+            |lor| format!("{} {}{source}", self.say("LOR"), self.percent(lor)),
+        );
+        match (info.dlor, info.ulor) {
+            (Some(dlor), Some(ulor)) => {
+                let (below, above) = (self.say("DLOR"), self.say("ULOR"));
+                format!("{lor} · {below} {} · {above} {} · {down}", self.percent(dlor), self.percent(ulor))
+            }
+            _ => format!("{lor} · {down}"),
+        }
+    }
+
+    fn power(&self) -> String {
+        let (Some(watts), Some(efficacy)) = (self.info.power_w, self.info.efficacy_lm_per_w) else {
+            return self.say("not stated").to_owned();
+        };
+        let [watts, efficacy] = [watts, efficacy].map(|value| figures(self.lang, value, 3));
+        format!("{watts} {} · {efficacy} {}", self.say("W"), self.say("lm/W"))
+    }
+
+    fn largest(&self) -> String {
+        let peak = self.info.i_max;
+        format!(
+            "{} {} {} C{} γ {}° ({} {})",
+            figures(self.lang, peak.cd, 4),
+            self.say("cd"),
+            self.say("at"),
+            peak.c_deg,
+            peak.gamma_deg,
+            figures(self.lang, 1000.0 * peak.cd / self.info.flux_integrated_lm, 3),
+            self.say("cd/klm")
+        )
+    }
+
+    fn opening(&self) -> String {
+        let size = |value: f64| fixed(self.lang, value, 3);
+        let sizes = |values: &[f64]| {
+            let sizes: Vec<String> = values.iter().map(|value| size(*value)).collect();
+            format!("{} {}", sizes.join(" × "), self.say("m"))
+        };
+        let height = |height_m: f64| {
+            let said = format!("{} {} {}", self.say(", luminous height"), size(height_m), self.say("m"));
+            if height_m > 0.0 { said } else { String::new() }
+        };
+        let plan = |length_m: f64, width_m: f64| {
+            format!("{} {}", sizes(&[length_m, width_m]), self.say("(length × width)"))
+        };
+        match self.info.opening {
+            Opening::Point => self.say("none: a point").to_owned(),
+            Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
+                let sides = if side_x_m > 0.0 || side_y_m > 0.0 {
+                    let (ends, long) = (self.say("(ends)"), self.say("(long sides)"));
+                    let [x, y] = [side_x_m, side_y_m].map(|side| sizes(&[side]));
+                    format!("{} {x} {ends}, {y} {long}", self.say(", luminous sides"))
+                } else {
+                    String::new()
+                };
+                format!("{} {}{sides}", self.say("rectangle"), plan(length_m, width_m))
+            }
+            Opening::Sided { length_m, width_m, sides_m: [c90, c180, c270, c0] } => format!(
+                "{} {}{} C0 {} · C90 {} · C180 {} · C270 {} {}",
+                self.say("rectangle"),
+                plan(length_m, width_m),
+                self.say(", luminous sides"),
+                size(c0),
+                size(c90),
+                size(c180),
+                size(c270),
+                self.say("m")
+            ),
+            Opening::Disc { diameter_m, height_m } => {
+                format!("{} ⌀ {}{}", self.say("disc"), sizes(&[diameter_m]), height(height_m))
+            }
+            Opening::Ellipse { length_m, width_m, height_m } => {
+                format!("{} {}{}", self.say("ellipse"), plan(length_m, width_m), height(height_m))
+            }
+            Opening::Ellipsoid { length_m, width_m, height_m } => {
+                if (length_m - width_m).abs().max((length_m - height_m).abs()) < 1e-9 {
+                    return format!("{} ⌀ {}", self.say("sphere"), sizes(&[length_m]));
+                }
+                let all = sizes(&[length_m, width_m, height_m]);
+                format!("{} {all} {}", self.say("ellipsoid"), self.say("(length × width × height)"))
+            }
+            Opening::Tube { length_m, width_m, height_m, across } => {
+                let way = if across { self.say("along C0–C180") } else { self.say("along C90–C270") };
+                let section = sizes(&[width_m, height_m]);
+                format!(
+                    "{}, {} {way}, ⌀ {section} {}",
+                    self.say("lying cylinder"),
+                    sizes(&[length_m]),
+                    self.say("(level × upright)")
+                )
+            }
+            Opening::Upright { width_m, height_m, across, round } => {
+                let shape = if round { self.say("ellipse") } else { self.say("rectangle") };
+                let faces = if across { "C0, C180" } else { "C90, C270" };
+                let all = sizes(&[width_m, height_m]);
+                format!(
+                    "{} {shape} {all} {} {} {faces}",
+                    self.say("upright"),
+                    self.say("(width × height)"),
+                    self.say("facing")
+                )
+            }
+        }
+    }
+
+    fn symmetry(&self) -> &'static str {
+        match self.info.symmetry {
+            Symmetry::Rotational => self.say("about the vertical axis"),
+            Symmetry::Quadrant => self.say("about both planes"),
+            Symmetry::AboutLength => self.say("about C90–C270"),
+            Symmetry::AboutWidth => self.say("about C0–C180"),
+            Symmetry::None => self.say("none"),
+        }
+    }
+
+    fn planes(&self, [c0, c90]: &[Result<f64, Undefined>; 2]) -> String {
+        let degrees = |value: &Result<f64, Undefined>| {
+            or_reason(value, |value| format!("{}°", fixed(self.lang, value, 1)))
+        };
+        format!("C0–C180 {} · C90–C270 {}", degrees(c0), degrees(c90))
+    }
+
+    fn flux_code(&self) -> String {
+        match &self.info.flux_code {
+            Ok(code) => code.map(|part| fixed(self.lang, part, 0)).join(" "),
+            Err(undefined) => format!("— ({undefined})"),
+        }
+    }
+
+    fn spacing(&self) -> String {
+        let ratio = |value: &Result<f64, Undefined>| or_reason(value, |value| fixed(self.lang, value, 2));
+        let spacing = &self.info.spacing;
+        if let (Err(undefined), Err(_)) = (&spacing.across, &spacing.along) {
+            return format!("— ({undefined})");
+        }
+        format!(
+            "C0 {} · C90 {} · {} {}",
+            ratio(&spacing.across),
+            ratio(&spacing.along),
+            self.say("diagonal"),
+            ratio(&spacing.diagonal)
+        )
+    }
+
+    /// Of use for road and area luminaires only, and short for the others.
+    fn intensity_class(&self) -> String {
+        let outdoor = &self.info.outdoor;
+        let class = format!("G*{}", outdoor.g_star);
+        let class = if outdoor.g_star > 0 { class } else { self.say("none of G*1 … G*6").to_owned() };
+        let largest: Vec<String> = G_GAMMAS_DEG
+            .iter()
+            .zip(&outdoor.g_cd_per_klm)
+            .map(|(gamma, cd)| format!("≥ {gamma}°: {}", figures(self.lang, *cd, 3)))
+            .collect();
+        format!(
+            "{class} {} {}, γ {} (EN 13201-2, {})",
+            self.say("by"),
+            self.say("cd/klm"),
+            largest.join(" · "),
+            self.say("unverified")
+        )
+    }
+
+    fn glare_index(&self) -> String {
+        let unverified = self.say("unverified");
+        match &self.info.outdoor.glare_index {
+            Err(undefined) => format!("— ({undefined})"),
+            Ok((index, class)) => format!(
+                "D{class}, I·A^-0.5 {} 85° = {} {}/{} (EN 13201-2, {unverified})",
+                self.say("at"),
+                figures(self.lang, *index, 3),
+                self.say("cd"),
+                self.say("m")
+            ),
+        }
+    }
+
+    fn bug(&self) -> String {
+        let bug = &self.info.outdoor.bug;
+        let decided: Vec<String> = bug
+            .decided_by
+            .iter()
+            .map(|(zone, lm)| format!("{zone} {} {}", self.lumens(*lm), self.say("lm")))
+            .collect();
+        let [b, u, g] = bug.rating;
+        let street = if bug.quadrilateral {
+            self.say("all quadrants alike").to_owned()
+        } else {
+            format!("{} C{}", self.say("street towards"), c_deg(bug.front_azimuth_deg))
+        };
+        let (by, unverified) = (self.say("by"), self.say("unverified"));
+        format!("B{b} U{u} G{g} {by} {}; {street} (TM-15-11, {unverified})", decided.join(", "))
+    }
+
+    fn zones(&self, text: &mut String) {
+        put(text, format_args!("  {}\n", self.say("zonal flux, lm")));
+        for (half, zones) in self.info.zones_lm.chunks(9).enumerate() {
+            let name = |k: usize| format!("{}–{}°", 90 * half + 10 * k, 90 * half + 10 * (k + 1));
+            let heads: Vec<String> = (0..9).map(|k| format!("{:>9}", name(k))).collect();
+            let values: Vec<String> =
+                zones.iter().map(|lm| format!("{:>9}", fixed(self.lang, *lm, 1))).collect();
+            put(text, format_args!("  {}\n  {}\n", heads.concat(), values.concat()));
+        }
+    }
+
+    fn luminances(&self, text: &mut String) {
+        if self.info.opening == Opening::Point {
+            return;
+        }
+        put(text, format_args!("  {}\n", self.say("luminance, cd/m²")));
+        let heads: Vec<String> =
+            GAMMAS_DEG.iter().map(|gamma| format!("{:>11}", format!("γ {gamma}°"))).collect();
+        put(text, format_args!("  {:>9}{}\n", "", heads.concat()));
+        for row in &self.info.luminances {
+            let rotational = self.info.symmetry == Symmetry::Rotational;
+            let name = if rotational { self.say("all C").into() } else { format!("C{}", row.c_deg) };
+            let cell = |value: &Result<crate::units::Nits, Undefined>| {
+                let shown = value.as_ref().map_or("—".into(), |nits| figures(self.lang, nits.0, 3));
+                format!("{shown:>11}")
+            };
+            put(text, format_args!("  {name:>9}{}\n", row.luminances.iter().map(cell).collect::<String>()));
+        }
     }
 }
 
 fn or_reason(value: &Result<f64, Undefined>, show: impl Fn(f64) -> String) -> String {
     value.as_ref().map_or_else(|undefined| format!("— ({undefined})"), |value| show(*value))
-}
-
-fn planes([c0, c90]: &[Result<f64, Undefined>; 2]) -> String {
-    let degrees =
-        |value: &Result<f64, Undefined>| or_reason(value, |value| format!("{}°", fixed(LANG, value, 1)));
-    format!("C0–C180 {} · C90–C270 {}", degrees(c0), degrees(c90))
-}
-
-fn flux_code(info: &Info) -> String {
-    match &info.flux_code {
-        Ok(code) => code.map(|part| fixed(LANG, part, 0)).join(" "),
-        Err(undefined) => format!("— ({undefined})"),
-    }
-}
-
-fn spacing(info: &Info) -> String {
-    let ratio = |value: &Result<f64, Undefined>| or_reason(value, |value| fixed(LANG, value, 2));
-    let spacing = &info.spacing;
-    if let (Err(undefined), Err(_)) = (&spacing.across, &spacing.along) {
-        return format!("— ({undefined})");
-    }
-    format!(
-        "C0 {} · C90 {} · diagonal {}",
-        ratio(&spacing.across),
-        ratio(&spacing.along),
-        ratio(&spacing.diagonal)
-    )
-}
-
-fn zones(info: &Info, text: &mut String) {
-    text.push_str("  zonal flux, lm\n");
-    for (half, zones) in info.zones_lm.chunks(9).enumerate() {
-        let name = |k: usize| format!("{}–{}°", 90 * half + 10 * k, 90 * half + 10 * (k + 1));
-        let heads: Vec<String> = (0..9).map(|k| format!("{:>9}", name(k))).collect();
-        let values: Vec<String> = zones.iter().map(|lm| format!("{:>9}", fixed(LANG, *lm, 1))).collect();
-        put(text, format_args!("  {}\n  {}\n", heads.concat(), values.concat()));
-    }
-}
-
-fn luminances(info: &Info, text: &mut String) {
-    if info.opening == Opening::Point {
-        return;
-    }
-    text.push_str("  luminance, cd/m²\n");
-    let heads: Vec<String> =
-        GAMMAS_DEG.iter().map(|gamma| format!("{:>11}", format!("γ {gamma}°"))).collect();
-    put(text, format_args!("  {:>9}{}\n", "", heads.concat()));
-    for row in &info.luminances {
-        let name =
-            if info.symmetry == Symmetry::Rotational { "all C".into() } else { format!("C{}", row.c_deg) };
-        let cell = |value: &Result<crate::units::Nits, Undefined>| {
-            format!("{:>11}", value.as_ref().map_or("—".into(), |nits| figures(LANG, nits.0, 3)))
-        };
-        put(text, format_args!("  {name:>9}{}\n", row.luminances.iter().map(cell).collect::<String>()));
-    }
 }

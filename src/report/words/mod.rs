@@ -1,9 +1,11 @@
 //! The words of every report. A word is looked up here and nowhere else, so a language is one
 //! column of [`table::TERMS`]; sentences of solver and loader are looked up by [`said`].
 
+mod lamp;
 mod sentences;
 mod table;
 
+pub use lamp::lamp_word;
 pub use sentences::said;
 pub use table::{TERMS, Term};
 

@@ -1,0 +1,105 @@
+//! What `lamp far-field` prints: fluxes with their intervals, and how exact the table is.
+
+use serde::Serialize;
+
+use super::super::ReportError;
+use super::super::number::{figures, fixed};
+use super::super::words::Lang;
+use crate::estimate::{Estimate, quantile};
+use crate::lamp::c_deg;
+use crate::solve::far_field::FarField;
+
+#[derive(Serialize)]
+struct Value {
+    value: f64,
+    se: f64,
+    lo: f64,
+    hi: f64,
+}
+
+#[derive(Serialize)]
+struct Node {
+    c_deg: f64,
+    gamma_deg: f64,
+    cd: f64,
+    se: f64,
+}
+
+#[derive(Serialize)]
+struct Table {
+    emitted_lm: f64,
+    escaped_lm: Value,
+    lor: Value,
+    blurred_lm: Value,
+    table_lm: Value,
+    blocks: usize,
+    nodes: Vec<Node>,
+}
+
+/// A sentence per figure.
+pub fn text(field: &FarField) -> String {
+    let (lang, escaped) = (Lang::En, field.escaped_lm);
+    let percent = |lm: f64| format!("{} %", fixed(lang, 100.0 * lm / field.emitted_lm, 2));
+    let with_half =
+        |value: Estimate| format!("{} ± {} lm", figures(lang, value.value, 5), figures(lang, half(value), 2));
+    let mut text = format!(
+        "  emitted       {} lm\n  leaves        {} ({} ± {})\n  table         {}, interpolated\n  exactness     \
+         standard error {} of the largest intensity (rms over {} directions, {} blocks)\n",
+        figures(lang, field.emitted_lm, 5),
+        with_half(escaped),
+        percent(escaped.value),
+        percent(half(escaped)),
+        with_half(field.table_lm),
+        percent_of(field.error()),
+        field.cd.iter().map(Vec::len).sum::<usize>(),
+        escaped.n,
+    );
+    if field.mirrored_lm.value > 0.0 {
+        text.push_str(&format!(
+            "  blurred       {} leave by a mirror: their directions are blurred by one step of the table\n",
+            percent(field.mirrored_lm.value)
+        ));
+    }
+    text
+}
+
+fn percent_of(part: f64) -> String {
+    format!("{} %", figures(Lang::En, 100.0 * part, 2))
+}
+
+/// Half of the 95 % interval.
+fn half(value: Estimate) -> f64 {
+    if value.se > 0.0 { quantile(0.975, value.n.saturating_sub(1)) * value.se } else { 0.0 }
+}
+
+/// All nodes with their errors.
+///
+/// # Errors
+/// Where a value cannot be encoded.
+pub fn json(field: &FarField) -> Result<String, ReportError> {
+    let shown = |value: Estimate, unit: f64| Value {
+        value: value.value / unit,
+        se: value.se / unit,
+        lo: (value.value - half(value)) / unit,
+        hi: (value.value + half(value)) / unit,
+    };
+    let nodes = field.azimuths_deg.iter().zip(&field.cd).flat_map(|(azimuth, plane)| {
+        let node = move |(gamma, cd): (&f64, &Estimate)| Node {
+            c_deg: c_deg(*azimuth),
+            gamma_deg: *gamma,
+            cd: cd.value,
+            se: cd.se,
+        };
+        field.gammas_deg.iter().zip(plane).map(node)
+    });
+    let table = Table {
+        emitted_lm: field.emitted_lm,
+        escaped_lm: shown(field.escaped_lm, 1.0),
+        lor: shown(field.escaped_lm, field.emitted_lm),
+        blurred_lm: shown(field.mirrored_lm, 1.0),
+        table_lm: shown(field.table_lm, 1.0),
+        blocks: field.escaped_lm.n,
+        nodes: nodes.collect(),
+    };
+    Ok(serde_json::to_string_pretty(&table)? + "\n")
+}

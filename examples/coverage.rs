@@ -9,9 +9,10 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use gershun::emitters::seen_from;
+use gershun::emitters::sighted_from;
 use gershun::estimate::{Estimate, Pair};
 use gershun::grid::{GridRule, rectangle};
+use gershun::measure::glare_sources::Convention;
 use gershun::measure::{Answers, view, weights};
 use gershun::project::{LoadOptions, load};
 use gershun::query::{Demand, Kernel, Receiver};
@@ -85,8 +86,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let pair = Pair::from_blocks(&points[0], &mean);
         let (lo, hi) = pair.ratio_interval(ALPHA);
         run.push((pair.ratio().value, lo, hi));
-        let seen = seen_from(prepared.emitters(), eye, seed);
-        let glare = view::glare(&answers, prepared.emitters(), &seen, gaze, 3, &light, ALPHA).ugr;
+        let sighted = sighted_from(prepared.emitters(), eye, seed);
+        let asked = view::Asked { gaze, row: 3, indices: &[], convention: Convention::default() };
+        let glare = view::glare(&answers, prepared.emitters(), &sighted, &asked, &light, ALPHA).ugr;
         run.push((glare.value.unwrap_or(f64::NAN), glare.lo, glare.hi));
         run
     };

@@ -14,9 +14,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use common::cpu_seconds;
-use gershun::emitters::seen_from;
+use gershun::emitters::sighted_from;
 use gershun::estimate::{Estimate, Pair};
 use gershun::grid::{GridRule, rectangle};
+use gershun::measure::glare_sources::Convention;
 use gershun::measure::{Answers, view, weights};
 use gershun::project::{LoadOptions, load};
 use gershun::query::{Demand, Kernel, Ray, Receiver};
@@ -111,8 +112,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let pair = Pair::from_blocks(&points[0], &mean);
         let (lo, hi) = pair.ratio_interval(ALPHA);
         run.push((pair.ratio().value, lo, hi));
-        let seen = seen_from(prepared.emitters(), eye, seed);
-        let glare = view::glare(&answers, prepared.emitters(), &seen, gaze, 3, &light, ALPHA).ugr;
+        let sighted = sighted_from(prepared.emitters(), eye, seed);
+        let asked = view::Asked { gaze, row: 3, indices: &[], convention: Convention::default() };
+        let glare = view::glare(&answers, prepared.emitters(), &sighted, &asked, &light, ALPHA).ugr;
         run.push((glare.value.unwrap_or(f64::NAN), glare.lo, glare.hi));
         for row in [4, demand.rows() - 1] {
             let estimate = Estimate::from_blocks(&answers.total(row, &light));

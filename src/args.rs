@@ -46,7 +46,7 @@ pub enum Command {
     },
     /// Print the JSON Schema of result.json
     Schema,
-    /// Glare of luminance images: every index, and the sources that were found
+    /// Glare of luminance images, or of a project's observers
     #[command(
         after_help = "Every index is printed with its convention; one that is not defined here says why.
 The options mean what evalglare's mean. Positions count from the lower left corner.
@@ -54,7 +54,8 @@ The options mean what evalglare's mean. Positions count from the lower left corn
 Examples:
   gershun glare --image view.hdr
   gershun glare --image view.hdr --task 400,300,0.6 --check sources.svg
-  gershun glare --image *.exr --threshold 1500 --format csv > glare.csv"
+  gershun glare --image *.exr --threshold 1500 --format csv > glare.csv
+  gershun glare scenes/office --compare-methods"
     )]
     Glare(crate::args_glare::Glare),
     /// Photometric files: figures, faults, UGR tables

@@ -7,8 +7,20 @@ use clap::{Args, ValueEnum};
 /// Arguments of `glare`.
 #[derive(Args, Debug)]
 pub struct Glare {
+    /// project.toml or its folder, in place of images: its observers in all their directions
+    #[arg(value_name = "PROJECT", conflicts_with = "image")]
+    pub project: Option<PathBuf>,
+    /// Of a project: UGR by six conventions of sources and position index
+    #[arg(long, requires = "project")]
+    pub compare_methods: bool,
+    /// Of a project: number of blocks
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=16_384))]
+    pub blocks: u32,
+    /// Of a project: let it read files outside its folder
+    #[arg(long)]
+    pub allow_outside: bool,
     /// Luminance images: Radiance HDR or OpenEXR
-    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
+    #[arg(long, value_name = "FILE", required_unless_present = "project", num_args = 1..)]
     pub image: Vec<PathBuf>,
     /// Pixels above L cd/m² are glare sources [default: 2000]
     #[arg(long, value_name = "L", value_parser = positive, conflicts_with = "threshold_factor")]

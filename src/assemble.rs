@@ -2,10 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::emitters::{Emitters, Seen};
+use crate::emitters::{Emitters, Sighted};
 use crate::glare::source::NO_SOURCE;
 use crate::judge::{self, Judged};
 use crate::luminaire::LuminaireType;
+use crate::measure::glare_sources::Convention;
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
     AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome, Value,
@@ -31,7 +32,7 @@ pub struct Context<'a> {
     /// Its luminaires.
     pub emitters: &'a Emitters<'a>,
     /// What each planned view of each room sees, computed once.
-    pub seen: &'a [Vec<Vec<Seen>>],
+    pub seen: &'a [Vec<Sighted>],
     /// For each room, the UGR table method's values for each spacing-to-height ratio asked for.
     pub tables: &'a [Vec<(f64, Vec<UgrTableOutcome>)>],
     /// Risk of an individual interval.
@@ -65,12 +66,15 @@ pub fn ugr_tables(
 }
 
 /// The sources seen by every planned view.
-pub fn seen_by_views(plan: &Plan, emitters: &Emitters, seed: u64) -> Vec<Vec<Vec<Seen>>> {
+pub fn seen_by_views(plan: &Plan, emitters: &Emitters, seed: u64) -> Vec<Vec<Sighted>> {
     use rayon::prelude::*;
     plan.rooms
         .iter()
         .map(|room| {
-            room.views.par_iter().map(|view| crate::emitters::seen_from(emitters, view.eye, seed)).collect()
+            room.views
+                .par_iter()
+                .map(|view| crate::emitters::sighted_from(emitters, view.eye, seed))
+                .collect()
         })
         .collect()
 }
@@ -139,9 +143,11 @@ impl Context<'_> {
                 let blocks = area::blocks(&self.answers, asked, &weights);
                 (area::gauge(&blocks, planned.statistic, alpha), "maintained".into(), None)
             }
-            Subject::Viewpoint(viewpoint) => {
-                (self.worst_view(room, *viewpoint, planned.light_scene, alpha), view::CONVENTION.into(), None)
-            }
+            Subject::Viewpoint(viewpoint) => (
+                self.worst_view(room, *viewpoint, planned.light_scene, alpha),
+                Convention::default().words(),
+                None,
+            ),
             Subject::OfTask(place, quantity, task, of) => {
                 let weights = self.weights(planned.light_scene, entry, true);
                 let areas = &self.plan.rooms[room].areas;
@@ -216,7 +222,7 @@ impl Context<'_> {
         let each = alpha / views.len().max(1) as f64;
         let (mut worst, mut dark): (Option<Gauged>, Option<Gauged>) = (None, None);
         for &index in &views {
-            let gauged = self.glare(room, index, light_scene, each).ugr;
+            let gauged = self.glare(room, index, light_scene, each, &[]).ugr;
             match &gauged.value {
                 Err(undefined) if undefined.reason == NO_SOURCE => {
                     dark = Some(gauged);
@@ -240,11 +246,21 @@ impl Context<'_> {
             .unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
     }
 
-    fn glare(&self, room: usize, index: usize, light_scene: usize, alpha: f64) -> view::Glare {
+    /// Glare of a planned view; `indices` are wanted beside UGR.
+    fn glare(
+        &self,
+        room: usize,
+        index: usize,
+        light_scene: usize,
+        alpha: f64,
+        indices: &[&'static str],
+    ) -> view::Glare {
         let planned = &self.plan.rooms[room].views[index];
         let weights = self.weights(light_scene, &self.world.rooms[room], false);
-        let seen = &self.seen[room][index];
-        view::glare(&self.answers, self.emitters, seen, planned.direction, planned.row, &weights, alpha)
+        let sighted = &self.seen[room][index];
+        let convention = Convention::default();
+        let asked = view::Asked { gaze: planned.direction, row: planned.row, indices, convention };
+        view::glare(&self.answers, self.emitters, sighted, &asked, &weights, alpha)
     }
 
     fn weights(&self, light_scene: usize, room: &Room, maintained: bool) -> Vec<f64> {
@@ -263,7 +279,7 @@ impl Context<'_> {
                     .all(|quantity| fine(&area::blocks(&self.answers, quantity, &weights), r))
             });
             let views = (0..planned.views.len()).all(|index| {
-                let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha).ugr;
+                let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha, &[]).ugr;
                 ugr.value.is_err() || ugr.se <= 3.5 * r
             });
             areas && views
@@ -350,7 +366,7 @@ impl Context<'_> {
         let mut outcomes = Vec::new();
         for (index, entry) in planned.views.iter().enumerate() {
             for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
-                let glare = self.glare(room, index, number, self.alpha);
+                let glare = self.glare(room, index, number, self.alpha, &entry.indices);
                 let d = entry.direction;
                 let azimuth_deg = d.y.atan2(d.x).to_degrees();
                 values.push(Value {
@@ -364,7 +380,21 @@ impl Context<'_> {
                     estimate: glare.ugr.interval(),
                     n: self.answers.blocks(),
                 });
+                for one in &glare.indices {
+                    values.push(Value {
+                        room: self.world.rooms[room].name.clone(),
+                        subject: entry.name.clone(),
+                        light_scene: light_scene.name.clone(),
+                        quantity: one.index.key.into(),
+                        statistic: Statistic::Value.key().into(),
+                        location: Some(entry.eye),
+                        unit: one.index.unit.into(),
+                        estimate: one.gauged.interval(),
+                        n: self.answers.blocks(),
+                    });
+                }
                 outcomes.push(ViewpointOutcome {
+                    indices: glare.indices.iter().map(view::GaugedIndex::outcome).collect(),
                     name: entry.name.clone(),
                     light_scene: light_scene.name.clone(),
                     eye: entry.eye,
@@ -372,7 +402,7 @@ impl Context<'_> {
                     azimuth_deg: if azimuth_deg == 0.0 { 0.0 } else { azimuth_deg },
                     tilt_deg: d.z.clamp(-1.0, 1.0).asin().to_degrees(),
                     ugr: glare.ugr.interval(),
-                    convention: view::CONVENTION.into(),
+                    convention: Convention::default().words(),
                     background_cd_m2: glare.background_cd_m2,
                     e_v_lx: glare.e_v_lx,
                     sources: glare.sources,

@@ -9,7 +9,8 @@ use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
 use gershun::image::{LuminanceImage, ViewOptions, read};
-use gershun::project::read_image;
+use gershun::observe::{CONVENTIONS, observe};
+use gershun::project::{LoadOptions, load, read_image};
 use gershun::report::glare as report;
 use gershun::report::write_file;
 use gershun::units::Nits;
@@ -22,6 +23,9 @@ use crate::{BAD_INPUT, COMPLIES, complain, say};
 const TASK_FACTOR: f64 = 5.0;
 
 pub fn run(glare: &Glare) -> u8 {
+    if let Some(project) = &glare.project {
+        return observers(glare, project);
+    }
     if glare.check.is_some() && glare.image.len() > 1 {
         return complain("--check draws one image; name one");
     }
@@ -58,6 +62,37 @@ pub fn run(glare: &Glare) -> u8 {
     };
     match text {
         Ok(text) => worst.max(say(&text)),
+        Err(error) => complain(&error.to_string()),
+    }
+}
+
+/// Glare of a project's observers.
+fn observers(glare: &Glare, path: &Path) -> u8 {
+    let options = LoadOptions { allow_outside: glare.allow_outside, ..LoadOptions::default() };
+    let project = match load(path, &options) {
+        Ok(project) => project,
+        Err(diagnostics) => {
+            for diagnostic in &diagnostics {
+                complain(&diagnostic.to_string());
+            }
+            return BAD_INPUT;
+        }
+    };
+    let conventions = if glare.compare_methods { &CONVENTIONS[..] } else { &CONVENTIONS[..1] };
+    let observed = observe(&project, conventions, glare.blocks as usize);
+    if observed.is_empty() {
+        return complain(
+            "the project has no viewpoint\n  hint: add one with [[viewpoint]], eye and direction",
+        );
+    }
+    let text = match glare.format {
+        GlareFormat::Human if glare.compare_methods => Ok(report::compared_text(&observed)),
+        GlareFormat::Human => Ok(report::observed_text(&observed)),
+        GlareFormat::Json => report::observed_json(&observed),
+        GlareFormat::Csv => report::observed_csv(&observed),
+    };
+    match text {
+        Ok(text) => say(&text),
         Err(error) => complain(&error.to_string()),
     }
 }

@@ -9,6 +9,7 @@
 mod direct;
 mod images;
 mod seen;
+mod shining;
 
 use glam::{DMat3, DVec3};
 
@@ -19,7 +20,8 @@ use crate::scene::Scene;
 
 pub use direct::{AS_POINT, TOLERANCE, integrated, unshadowed};
 pub use images::Mirror;
-pub use seen::{Seen, seen_from};
+pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_from};
+pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
 
 /// All luminaires of a scene and their images.
 #[derive(Debug)]

@@ -17,6 +17,7 @@ pub mod luminaire;
 pub mod material;
 pub mod measure;
 pub mod norm;
+pub mod observe;
 pub mod outcome;
 pub mod photometry;
 pub mod plan;

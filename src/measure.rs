@@ -4,6 +4,7 @@
 
 pub mod area;
 pub mod flux;
+pub mod glare_sources;
 pub mod room_ugr;
 pub mod view;
 

@@ -229,6 +229,8 @@ pub struct ViewpointOutcome {
     pub tilt_deg: f64,
     /// UGR with its interval.
     pub ugr: Result<Interval, Undefined>,
+    /// Further indices that the project asks for.
+    pub indices: Vec<IndexOutcome>,
     /// How it was computed: source luminance, position index.
     pub convention: String,
     /// Background luminance E_i/π, cd/m².
@@ -238,6 +240,21 @@ pub struct ViewpointOutcome {
     /// Sources in order of share.
     pub sources: Vec<GlareSourceOutcome>,
     /// Validity notes.
+    pub notes: Vec<String>,
+}
+
+/// An index of glare beside UGR.
+#[derive(Clone, Debug)]
+pub struct IndexOutcome {
+    /// Key, `DGP`.
+    pub key: String,
+    /// Name in words.
+    pub name: String,
+    /// Unit, `1` for none.
+    pub unit: String,
+    /// Value with its interval, or why there is none.
+    pub estimate: Result<Interval, Undefined>,
+    /// What makes it doubtful.
     pub notes: Vec<String>,
 }
 

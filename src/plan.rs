@@ -88,6 +88,8 @@ pub struct PlannedView {
     pub direction: DVec3,
     /// Row of the illuminance at the eye.
     pub row: usize,
+    /// Keys of the indices asked for beside UGR.
+    pub indices: Vec<&'static str>,
     /// Light scene by which it is judged.
     pub light_scene: usize,
 }
@@ -214,6 +216,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 eye: viewpoint.eye,
                 direction,
                 row,
+                indices: viewpoint.indices.clone(),
                 light_scene: viewpoint.light_scene.unwrap_or(0),
             });
         }

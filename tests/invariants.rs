@@ -241,6 +241,7 @@ const ORDER: &[&str] = &[
     "report",
     "biases",
     "lamp",
+    "observe",
     "assemble",
     "judge",
     "measure",

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Emitters;
+use super::shining::{Shining, shining_from};
 use crate::estimate::Estimate;
 use crate::rng::{Rng, Stratified};
 
@@ -10,6 +11,8 @@ use crate::rng::{Rng, Stratified};
 const REPLICATES: usize = 16;
 /// Points of the opening in each replicate.
 const POINTS: u32 = 32;
+/// Pieces of an opening along each of its two parameters.
+const PIECES: usize = 8;
 
 /// A luminaire (or its image) as seen from one point, channel at initial flux and full factor.
 #[derive(Clone, Debug)]
@@ -28,6 +31,35 @@ pub struct Seen {
     pub visible_fraction: f64,
     /// Projected area of the whole opening towards the eye, m².
     pub projected_area_m2: f64,
+    /// I/d² of the opening's centre, hidden or not, lx.
+    pub centre_lx: f64,
+    /// The visible part in pieces; empty for a point.
+    pub pieces: Vec<SeenPiece>,
+}
+
+/// A piece of an opening.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenPiece {
+    /// Unit direction from the eye to the middle of its visible part.
+    pub direction: DVec3,
+    /// Visible solid angle, sr.
+    pub visible_sr: f64,
+    /// ∫ L dω over it, lx.
+    pub normal_lx: f64,
+}
+
+/// Everything that shines, as seen from one eye in all directions.
+#[derive(Clone, Debug, Default)]
+pub struct Sighted {
+    /// Luminaires and their images.
+    pub luminaires: Vec<Seen>,
+    /// Luminous surfaces.
+    pub surfaces: Vec<Shining>,
+}
+
+/// Luminaires and luminous surfaces of which anything is visible from `eye`. Draws from `seed` only.
+pub fn sighted_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Sighted {
+    Sighted { luminaires: seen_from(emitters, eye, seed), surfaces: shining_from(emitters.scene, eye, seed) }
 }
 
 impl Seen {
@@ -56,6 +88,7 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
     let mut passed_sum = 0.0;
     let points = if source.is_point() { 1 } else { POINTS };
     let place = emitters.place(source, eye);
+    let mut cells = [(DVec3::ZERO, 0.0, 0.0); PIECES * PIECES];
     for _ in 0..REPLICATES {
         let sequence = Stratified::new(&mut rng);
         let (mut solid_sr, mut normal_lx) = (0.0, 0.0);
@@ -72,6 +105,13 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
             // Behind a pane or in a mirror the source keeps its solid angle and loses luminance.
             solid_sr += if passed > 0.0 { element_sr } else { 0.0 };
             normal_lx += arrival.normal_lx * passed;
+            if passed > 0.0 {
+                let place = u.map(|part| ((part * PIECES as f64) as usize).min(PIECES - 1));
+                let cell = &mut cells[place[0] * PIECES + place[1]];
+                cell.0 += arrival.direction * element_sr;
+                cell.1 += element_sr;
+                cell.2 += arrival.normal_lx * passed;
+            }
         }
         solid.push(solid_sr / f64::from(points));
         light.push(normal_lx / f64::from(points));
@@ -89,5 +129,19 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
         solid_angle_sr,
         normal_lx: Estimate::from_blocks(&light),
         projected_area_m2: source.opening.projected_area_m2(place.normalize_or_zero()),
+        centre_lx: emitters.luminaire(source).kind.distribution.intensity_along(place.normalize_or_zero())
+            * source.dim
+            / place.length_squared(),
+        pieces: pieces(&cells, REPLICATES as f64 * f64::from(points)),
     })
+}
+
+/// Cells (Σ ω d, Σ ω, Σ ∫ L dω) as pieces; empty ones are none.
+fn pieces(cells: &[(DVec3, f64, f64)], count: f64) -> Vec<SeenPiece> {
+    let of_cell = |&(direction, visible, light): &(DVec3, f64, f64)| SeenPiece {
+        direction: direction.normalize_or_zero(),
+        visible_sr: visible / count,
+        normal_lx: light / count,
+    };
+    cells.iter().filter(|(_, visible, _)| *visible > 0.0).map(of_cell).collect()
 }

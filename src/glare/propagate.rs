@@ -13,6 +13,9 @@ const STEP: f64 = 1e-4;
 pub struct SightError {
     /// Of E_i, lx; it moves E_v by as much and L_b by 1/π of it.
     pub e_indirect_lx: f64,
+    /// Of E_dir, lx, where it was estimated on its own; it moves E_v by as much. `None`: E_dir is what the
+    /// sources add up to, and moves with them.
+    pub e_direct_lx: Option<f64>,
     /// Of every source, in the order of the view.
     pub sources: Vec<SourceError>,
 }
@@ -37,38 +40,62 @@ pub fn standard_error(
     sight: &Sight,
     error: &SightError,
 ) -> Result<f64, Undefined> {
-    let effect = |change: &dyn Fn(&mut Sight, f64)| -> Result<f64, Undefined> {
-        let at = |step: f64| {
-            let mut changed = sight.clone();
+    let mut changed = sight.clone();
+    let mut slope = |change: &dyn Fn(&mut Sight, f64), touched: Option<usize>, step: f64| {
+        let mut at = |step: f64| {
             change(&mut changed, step);
-            index(&changed)
+            let value = index(&changed);
+            changed.e_v_lx = sight.e_v_lx;
+            changed.e_direct_lx = sight.e_direct_lx;
+            changed.background = sight.background;
+            if let Some(position) = touched {
+                changed.sources[position] = sight.sources[position];
+            }
+            value
         };
-        Ok((at(STEP)? - at(-STEP)?).abs() / (2.0 * STEP))
+        Ok::<f64, Undefined>((at(step)? - at(-step)?).abs() / (2.0 * step))
     };
     let mut variance = 0.0;
     if error.e_indirect_lx > 0.0 {
-        let indirect_lx = sight.e_indirect_lx();
-        let by_share = effect(&|sight, step| {
-            sight.e_v_lx += step * indirect_lx;
-            sight.background = Nits(sight.background.0 + step * indirect_lx / std::f64::consts::PI);
-        })?;
-        variance += (by_share * error.e_indirect_lx / indirect_lx).powi(2);
+        let per_lx = slope(
+            &|sight, step_lx| {
+                sight.e_v_lx += step_lx;
+                sight.background = Nits(sight.background.0 + step_lx / std::f64::consts::PI);
+            },
+            None,
+            STEP * sight.e_indirect_lx().abs(),
+        )?;
+        variance += (per_lx * error.e_indirect_lx).powi(2);
     }
+    if let Some(se_lx) = error.e_direct_lx.filter(|se_lx| *se_lx > 0.0) {
+        let per_lx = slope(
+            &|sight, step_lx| {
+                sight.e_v_lx += step_lx;
+                sight.e_direct_lx += step_lx;
+            },
+            None,
+            STEP * sight.e_v_lx.abs(),
+        )?;
+        variance += (per_lx * se_lx).powi(2);
+    }
+    let own = error.e_direct_lx.is_some();
     for (position, source) in error.sources.iter().enumerate() {
         let mut effects = 0.0;
         if source.light > 0.0 {
-            effects += source.light * effect(&|sight, step| brighten(sight, position, step))?;
+            let by_share = slope(&|sight, step| brighten(sight, position, step, own), Some(position), STEP)?;
+            effects += source.light * by_share;
         }
         if source.solid_angle > 0.0 {
-            effects += source.solid_angle * effect(&|sight, step| widen(&mut sight.sources[position], step))?;
+            let change = |sight: &mut Sight, step| widen(&mut sight.sources[position], step);
+            effects += source.solid_angle * slope(&change, Some(position), STEP)?;
         }
         variance += effects * effects;
     }
     Ok(variance.sqrt())
 }
 
-/// More light from a source of the same size.
-fn brighten(sight: &mut Sight, position: usize, step: f64) {
+/// More light from a source of the same size; E_dir is left alone where it was estimated on its own.
+fn brighten(sight: &mut Sight, position: usize, step: f64, own_direct: bool) {
     let source = &mut sight.sources[position];
     let added_lx = source.eye_lx * step;
     source.luminance = source.luminance * (1.0 + step);
@@ -76,8 +103,10 @@ fn brighten(sight: &mut Sight, position: usize, step: f64) {
     if let Some(extent) = &mut source.extent {
         extent.intensity_cd *= 1.0 + step;
     }
-    sight.e_v_lx += added_lx;
-    sight.e_direct_lx += added_lx;
+    if !own_direct {
+        sight.e_v_lx += added_lx;
+        sight.e_direct_lx += added_lx;
+    }
 }
 
 /// A larger solid angle with the same light.
@@ -124,18 +153,18 @@ mod tests {
         // 0.0347 per 1 % of E_i, 0.0695 per 1 % of one source's light. Catches a wrong derivative.
         let sight = view([1.0; 2], [1.0; 2], 250.0);
         let ugr = parse("UGR").unwrap().value;
-        let error = SightError { e_indirect_lx: 2.5, sources: Vec::new() };
+        let error = SightError { e_indirect_lx: 2.5, ..SightError::default() };
         let se = standard_error(ugr, &sight, &error).unwrap();
         assert!((se - 0.08 / std::f64::consts::LN_10).abs() < 1e-6, "{se}");
         let mut single = sight.clone();
         single.sources.truncate(1);
         let light = SourceError { light: 0.01, solid_angle: 0.0 };
-        let se =
-            standard_error(ugr, &single, &SightError { e_indirect_lx: 0.0, sources: vec![light] }).unwrap();
+        let se = standard_error(ugr, &single, &SightError { sources: vec![light], ..SightError::default() })
+            .unwrap();
         assert!((se - 0.16 / std::f64::consts::LN_10).abs() < 1e-6, "{se}");
         let size = SourceError { light: 0.0, solid_angle: 0.01 };
-        let se =
-            standard_error(ugr, &single, &SightError { e_indirect_lx: 0.0, sources: vec![size] }).unwrap();
+        let se = standard_error(ugr, &single, &SightError { sources: vec![size], ..SightError::default() })
+            .unwrap();
         assert!((se - 0.08 / std::f64::consts::LN_10).abs() < 1e-6, "{se}");
     }
 
@@ -146,6 +175,7 @@ mod tests {
         let relative = [0.01, 0.02];
         let error = SightError {
             e_indirect_lx: 4.0,
+            e_direct_lx: None,
             sources: relative.map(|light| SourceError { light, solid_angle: 0.0 }).to_vec(),
         };
         let sight = view([1.0; 2], [1.0; 2], 250.0);

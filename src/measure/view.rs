@@ -1,27 +1,42 @@
-//! Glare at an observer: sources from the luminaires themselves (never from pixels), background
-//! from the indirect vertical illuminance at the eye, initial flux.
+//! Glare at an observer: sources from the luminaires and luminous surfaces themselves (never from
+//! pixels), background from the indirect vertical illuminance at the eye, initial flux.
+
+use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::glare_sources::{Convention, sources};
 use super::{Answers, Gauged};
-use crate::emitters::{Emitters, Seen};
+use crate::emitters::{Emitters, Sighted};
 use crate::estimate::{Estimate, quantile};
-use crate::glare::position_index::{cie117_table, levin_iwata};
-use crate::glare::source::{Extent, GlareSource};
+use crate::glare::index::{Index, parse};
+use crate::glare::propagate::{SightError, standard_error};
+use crate::glare::source::{GlareSource, Sight};
 use crate::glare::ugr::{ugr, validity};
-use crate::outcome::GlareSourceOutcome;
-use crate::scene::Channel;
+use crate::outcome::{GlareSourceOutcome, IndexOutcome};
 use crate::solve::Part;
-use crate::units::{Nits, Undefined};
+use crate::units::Nits;
 
-/// How the numbers were made, printed with every UGR.
-pub const CONVENTION: &str = "visible part, mean luminance; position index CIE 117 table (Iwata–Osterhaus below the line of sight); L_b = E_ind/π";
+/// What is asked of a view.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// Unit line of sight.
+    pub gaze: DVec3,
+    /// Row of the illuminance on the plane of the eye.
+    pub row: usize,
+    /// Keys of the indices wanted beside UGR.
+    pub indices: &'a [&'static str],
+    /// How sources and positions are taken.
+    pub convention: Convention,
+}
 
 /// Glare of one observer in one direction under one light scene.
 #[derive(Clone, Debug)]
 pub struct Glare {
     /// UGR.
     pub ugr: Gauged,
+    /// The indices asked for beside it.
+    pub indices: Vec<GaugedIndex>,
     /// Background luminance, cd/m².
     pub background_cd_m2: f64,
     /// Illuminance at the eye, direct light included, lx, initial flux.
@@ -32,111 +47,115 @@ pub struct Glare {
     pub notes: Vec<String>,
 }
 
-/// UGR of the observer at `eye` that looks along `gaze`. `seen` are the sources visible from the
-/// eye, `row` answers the illuminance on the plane of the eye, `weights` are initial.
+/// An index with its interval.
+#[derive(Clone, Debug)]
+pub struct GaugedIndex {
+    /// Its row in the table.
+    pub index: &'static Index,
+    /// Value and interval.
+    pub gauged: Gauged,
+    /// What makes it doubtful.
+    pub notes: Vec<String>,
+}
+
+impl GaugedIndex {
+    /// As it stands in the result.
+    pub fn outcome(&self) -> IndexOutcome {
+        IndexOutcome {
+            key: self.index.key.into(),
+            name: self.index.name.into(),
+            unit: self.index.unit.into(),
+            estimate: self.gauged.interval(),
+            notes: self.notes.clone(),
+        }
+    }
+}
+
+/// Glare of the observer that sees `sighted`; `weights` are initial.
 pub fn glare(
     answers: &Answers,
     emitters: &Emitters,
-    seen: &[Seen],
-    gaze: DVec3,
-    row: usize,
+    sighted: &Sighted,
+    asked: &Asked,
     weights: &[f64],
     alpha: f64,
 ) -> Glare {
-    let background = Estimate::from_blocks(&answers.part(row, weights, Part::Indirect));
-    let e_v_lx = Estimate::from_blocks(&answers.total(row, weights)).value;
-    let background_cd_m2 = background.value / std::f64::consts::PI;
-    let mut notes = Vec::new();
-    let (mut sources, mut labels, mut variance_of_sum, mut terms) = (Vec::new(), Vec::new(), 0.0, Vec::new());
-    for one in seen {
-        let source = &emitters.sources[one.source];
-        let weight = weights[source.channel];
-        if !(weight > 0.0) || !(one.direction.dot(gaze) > 0.0) || !(one.normal_lx.value > 0.0) {
-            continue;
-        }
-        let Some(position_index) = position(gaze, one.direction, &mut notes) else { continue };
-        let area = one.solid_angle_sr.value;
-        let glaring = GlareSource {
-            luminance: Nits(weight * one.luminance_cd_m2().unwrap_or(0.0)),
-            solid_angle_sr: area,
-            position_index,
-            off_axis_deg: one.direction.dot(gaze).clamp(-1.0, 1.0).acos().to_degrees(),
-            eye_lx: weight * one.normal_lx.value * one.direction.dot(gaze),
-            extent: Some(Extent {
-                projected_area_m2: one.projected_area_m2,
-                intensity_cd: weight * one.normal_lx.value * one.distance_m * one.distance_m,
-                distance_m: one.distance_m,
-            }),
-        };
-        // L²ω = X²/ω with X = ∫L dω: relative variance at most (2 σ_X/X + σ_ω/ω)².
-        let relative = 2.0 * one.normal_lx.se / one.normal_lx.value
-            + if area > 0.0 { one.solid_angle_sr.se / area } else { 0.0 };
-        let term = ugr(&[glaring], Nits(0.25)).map_or(0.0, |index| 10f64.powf(index / 8.0));
-        variance_of_sum += (term * relative) * (term * relative);
-        terms.push(term);
-        labels.push(label(emitters, one.source));
-        sources.push((glaring, one.visible_fraction));
-    }
+    let parts =
+        [Part::Direct, Part::Image, Part::Indirect].map(|part| answers.part(asked.row, weights, part));
+    let [direct, image, indirect] = &parts;
+    let from_luminaires: Vec<f64> = direct.iter().zip(image).map(|(a, b)| a + b).collect();
+    let (from_luminaires, indirect) =
+        (Estimate::from_blocks(&from_luminaires), Estimate::from_blocks(indirect));
+    let found = sources(emitters, sighted, asked.gaze, weights, asked.convention);
+    let [surfaces_lx, surfaces_se] = found.surfaces_lx;
+    // What comes straight from a luminous surface is not background, though no part of the sheets is it.
+    let background_cd_m2 = (indirect.value - surfaces_lx) / PI;
+    let sight = Sight {
+        sources: found.counted.iter().map(|counted| counted.source).collect(),
+        e_v_lx: from_luminaires.value + indirect.value,
+        e_direct_lx: from_luminaires.value + surfaces_lx,
+        background: Nits(background_cd_m2),
+        ..Sight::default()
+    };
+    let error = SightError {
+        e_indirect_lx: indirect.se.hypot(surfaces_se),
+        e_direct_lx: Some(from_luminaires.se.hypot(surfaces_se)),
+        sources: found.counted.iter().map(|counted| counted.error).collect(),
+    };
+    let gauge = |index: &Index| gauge(index, &sight, &error, indirect.n, alpha);
+    let ugr_row = parse("UGR").expect("the table of indices begins with UGR");
+    let indices = asked.indices.iter().filter(|key| **key != "UGR").filter_map(|key| parse(key));
+    let mut notes = found.notes;
+    notes.extend(validity(&sight.sources));
+    notes.sort();
+    notes.dedup();
+    let terms: Vec<f64> = sight.sources.iter().map(term).collect();
     let total: f64 = terms.iter().sum();
-    let physical: Vec<GlareSource> = sources.iter().map(|(source, _)| *source).collect();
-    notes.extend(validity(&physical));
-    let value = if luminous_surface(emitters, weights) {
-        Err(Undefined::because("the scene has luminous surfaces, which are not yet counted as glare sources"))
-    } else {
-        ugr(&physical, Nits(background_cd_m2))
-    };
-    let gauged = match value {
-        Err(reason) => Gauged::undefined(reason),
-        Ok(value) => {
-            let relative = (background.se / background.value).hypot(variance_of_sum.sqrt() / total);
-            let se = 8.0 / std::f64::consts::LN_10 * relative;
-            let half =
-                if se > 0.0 { quantile(1.0 - 0.5 * alpha, background.n.saturating_sub(1)) * se } else { 0.0 };
-            Gauged { value: Ok(value), se, lo: value - half, hi: value + half, place: None }
-        }
-    };
-    let mut listed: Vec<GlareSourceOutcome> = sources
+    let mut listed: Vec<GlareSourceOutcome> = found
+        .counted
         .iter()
-        .zip(labels)
         .zip(&terms)
-        .map(|(((source, visible), label), term)| GlareSourceOutcome {
-            label,
-            luminance_cd_m2: source.luminance.0,
-            solid_angle_sr: source.solid_angle_sr,
-            position_index: source.position_index,
-            visible_fraction: *visible,
+        .map(|(counted, term)| GlareSourceOutcome {
+            label: counted.label.clone(),
+            luminance_cd_m2: counted.source.luminance.0,
+            solid_angle_sr: counted.source.solid_angle_sr,
+            position_index: counted.source.position_index,
+            visible_fraction: counted.visible_fraction,
             share: term / total,
         })
         .collect();
     listed.sort_by(|a, b| b.share.total_cmp(&a.share));
-    notes.sort();
-    notes.dedup();
-    Glare { ugr: gauged, background_cd_m2, e_v_lx, sources: listed, notes }
-}
-
-/// P of the CIE 117 table; below the line of sight, where the table has none, Iwata–Osterhaus; `None`
-/// in the table's void cells: such a source is ignored.
-fn position(gaze: DVec3, direction: DVec3, notes: &mut Vec<String>) -> Option<f64> {
-    let up = if gaze.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
-    if let Ok(index) = cie117_table(gaze, up, direction) {
-        return Some(index);
+    Glare {
+        ugr: gauge(ugr_row),
+        indices: indices
+            .map(|index| {
+                let gauged = gauge(index);
+                let notes = if gauged.value.is_ok() { (index.validity)(&sight) } else { Vec::new() };
+                GaugedIndex { index, gauged, notes }
+            })
+            .collect(),
+        background_cd_m2,
+        e_v_lx: sight.e_v_lx,
+        sources: listed,
+        notes,
     }
-    let view_up = (up - gaze * up.dot(gaze)).normalize();
-    if direction.dot(view_up) < 0.0 {
-        notes.push("a source lies below the line of sight: Iwata–Osterhaus position index".into());
-        return Some(levin_iwata(gaze, up, direction));
+}
+
+/// A source's part of Σ L²ω/P², by intensity where it is small.
+fn term(source: &GlareSource) -> f64 {
+    ugr(&[*source], Nits(0.25)).map_or(0.0, |index| 10f64.powf(index / 8.0))
+}
+
+/// An index with Student's interval about it.
+fn gauge(index: &Index, sight: &Sight, error: &SightError, blocks: usize, alpha: f64) -> Gauged {
+    let value = (index.value)(sight);
+    let se = value.clone().and_then(|_| standard_error(index.value, sight, error));
+    match (value, se) {
+        (Err(reason), _) | (Ok(_), Err(reason)) => Gauged::undefined(reason),
+        (Ok(value), Ok(se)) => {
+            let half =
+                if se > 0.0 { quantile(1.0 - 0.5 * alpha, blocks.saturating_sub(1)) * se } else { 0.0 };
+            Gauged { value: Ok(value), se, lo: value - half, hi: value + half, place: None }
+        }
     }
-    None
-}
-
-fn luminous_surface(emitters: &Emitters, weights: &[f64]) -> bool {
-    let channels = emitters.scene.channels.iter().zip(weights);
-    channels.into_iter().any(|(channel, weight)| *weight > 0.0 && matches!(channel, Channel::Surfaces { .. }))
-}
-
-fn label(emitters: &Emitters, index: usize) -> String {
-    let source = &emitters.sources[index];
-    let luminaire = emitters.luminaire(source);
-    let image = if source.mirror.is_some() { ", mirrored" } else { "" };
-    format!("{} #{} ({}{image})", luminaire.kind.name, source.luminaire + 1, luminaire.group)
 }

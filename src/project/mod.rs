@@ -282,8 +282,8 @@ pub struct Viewpoint {
     pub eye: DVec3,
     /// Unit lines of sight: one, or a sweep about the vertical.
     pub directions: Vec<DVec3>,
-    /// Indices asked for; `UGR` only so far.
-    pub indices: Vec<Quantity>,
+    /// Keys of the indices asked for, as the table of indices has them; UGR is always computed.
+    pub indices: Vec<&'static str>,
     /// Light scene; `None`: the first.
     pub light_scene: Option<usize>,
 }

@@ -202,6 +202,28 @@ fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportErro
                 Cell::Text(&room.name),
                 Cell::Text(undefined),
             ])?;
+            for index in &view.indices {
+                let ([value, se, lo, hi], undefined) = match &index.estimate {
+                    Ok(estimate) => (interval(*estimate), ""),
+                    Err(undefined) => ([const { Cell::Empty }; 4], undefined.reason.as_str()),
+                };
+                table.row(&[
+                    Cell::Text(&view.name),
+                    Cell::Text(&view.light_scene),
+                    Cell::Number(view.azimuth_deg),
+                    Cell::Number(view.tilt_deg),
+                    Cell::Text(&index.key),
+                    Cell::Text(&view.convention),
+                    value,
+                    se,
+                    lo,
+                    hi,
+                    Cell::Number(view.background_cd_m2),
+                    Cell::Number(view.e_v_lx),
+                    Cell::Text(&room.name),
+                    Cell::Text(undefined),
+                ])?;
+            }
         }
     }
     table.finish()

@@ -119,6 +119,15 @@ struct AreaRow<'a> {
 }
 
 #[derive(Serialize)]
+struct IndexRow<'a> {
+    index: &'a str,
+    unit: &'a str,
+    estimate: Option<Interval>,
+    undefined: Option<&'a str>,
+    notes: &'a [String],
+}
+
+#[derive(Serialize)]
 struct ViewpointRow<'a> {
     name: &'a str,
     light_scene: &'a str,
@@ -128,6 +137,7 @@ struct ViewpointRow<'a> {
     tilt_deg: f64,
     ugr: Option<Interval>,
     undefined: Option<&'a str>,
+    indices: Vec<IndexRow<'a>>,
     convention: &'a str,
     background_cd_m2: f64,
     e_v_lx: f64,
@@ -282,6 +292,17 @@ fn viewpoint(view: &ViewpointOutcome) -> ViewpointRow<'_> {
         tilt_deg: view.tilt_deg,
         ugr: view.ugr.as_ref().ok().copied(),
         undefined: reason(&view.ugr),
+        indices: view
+            .indices
+            .iter()
+            .map(|index| IndexRow {
+                index: &index.key,
+                unit: &index.unit,
+                estimate: index.estimate.as_ref().ok().copied(),
+                undefined: reason(&index.estimate),
+                notes: &index.notes,
+            })
+            .collect(),
         convention: &view.convention,
         background_cd_m2: view.background_cd_m2,
         e_v_lx: view.e_v_lx,

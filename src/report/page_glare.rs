@@ -86,10 +86,58 @@ pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
             ),
         );
     }
+    html.push_str(&further(views, lang));
     for view in views.iter().filter(|view| !view.sources.is_empty()) {
         html.push_str(&sources(view, lang));
     }
     html
+}
+
+/// The indices that observers ask for beside UGR, a line each.
+fn further(views: &[ViewpointOutcome], lang: Lang) -> String {
+    let mut rows = Vec::new();
+    for view in views {
+        for index in &view.indices {
+            let decimals = if index.unit == "1" && index.key.contains("GP") { 3 } else { 1 };
+            let (value, interval, reason) = match &index.estimate {
+                Ok(estimate) => (
+                    format!("<b>{}</b>", number::fixed(lang, estimate.value, decimals)),
+                    span(lang, *estimate, decimals),
+                    String::new(),
+                ),
+                Err(undefined) => ("—".into(), "—".into(), escape(&undefined.reason)),
+            };
+            let notes = index.notes.iter().map(|note| escape(note)).chain([reason]);
+            let unit = if index.unit == "1" { "" } else { &index.unit };
+            rows.push(vec![
+                format!(
+                    "{}<br/><span class=\"note\">{}</span>",
+                    escape(&view.name),
+                    escape(&view.light_scene)
+                ),
+                format!("{}°", number::fixed(lang, view.azimuth_deg, 1)),
+                format!("{} <span class=\"note\">{}</span>", escape(&index.key), escape(&index.name)),
+                format!("{value} {unit}"),
+                interval,
+                format!(
+                    "<span class=\"note\">{}</span>",
+                    notes.filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ")
+                ),
+            ]);
+        }
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    let head = [
+        word(lang, Term::Observer),
+        word(lang, Term::LineOfSight),
+        word(lang, Term::QuantityWord),
+        word(lang, Term::Value),
+        word(lang, Term::NumericalInterval),
+        word(lang, Term::Notes),
+    ];
+    grid("awwrll", &head, &rows)
 }
 
 fn sources(view: &ViewpointOutcome, lang: Lang) -> String {

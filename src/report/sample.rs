@@ -164,6 +164,22 @@ fn viewpoint(name: &str, ugr: Result<Interval, Undefined>) -> ViewpointOutcome {
         tilt_deg: -5.0,
         sources: if ugr.is_ok() { (0..7).map(source).collect() } else { Vec::new() },
         ugr,
+        indices: vec![
+            crate::outcome::IndexOutcome {
+                key: "DGP".into(),
+                name: "daylight glare probability".into(),
+                unit: "1".into(),
+                estimate: Ok(Interval { value: 0.31, se: 0.002, lo: 0.306, hi: 0.314 }),
+                notes: vec!["E_v 312 lx is below the 380 lx from which on DGP holds".into()],
+            },
+            crate::outcome::IndexOutcome {
+                key: "VCP".into(),
+                name: "visual comfort probability".into(),
+                unit: "%".into(),
+                estimate: Err(Undefined::because("the mean luminance of the field of view is not known")),
+                notes: Vec::new(),
+            },
+        ],
         convention: "one source per luminaire, ω-weighted mean luminance, CIE 117 position table".into(),
         background_cd_m2: 38.123456789,
         e_v_lx: 311.5,

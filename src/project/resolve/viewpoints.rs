@@ -8,10 +8,10 @@ use glam::{DMat3, DVec3};
 use super::areas::light_scene_index;
 use super::draft::{Draft, Located, locate};
 use super::lists::Table;
+use crate::glare::index::{INDICES, parse};
 use crate::project::context::Context;
 use crate::project::schema::{At, File, SweepSection, ViewpointSection};
 use crate::project::{LightScene, Viewpoint};
-use crate::quantity::Quantity;
 
 /// Directions one sweep may have.
 const MAX_DIRECTIONS: f64 = 3600.0;
@@ -65,7 +65,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
                 room: 0,
                 eye: DVec3::from_array(eye),
                 directions: vec![sight(azimuth_deg, tilt_deg.unwrap_or(0.0))],
-                indices: vec![Quantity::Ugr],
+                indices: Vec::new(),
                 light_scene: None,
             };
             let mut report = |context: &mut Context, message: String| {
@@ -101,21 +101,18 @@ fn insert(
     }
 }
 
-fn indices(names: &[At<String>], context: &mut Context) -> Vec<Quantity> {
-    if names.is_empty() {
-        return vec![Quantity::Ugr];
-    }
-    let mut indices = Vec::new();
+fn indices(names: &[At<String>], context: &mut Context) -> Vec<&'static str> {
+    let mut keys = Vec::new();
     for name in names {
-        match name.get_ref().as_str() {
-            "UGR" => indices.push(Quantity::Ugr),
-            other => {
-                let message = format!("\"{other}\" is no index that can be computed");
-                context.error(&name.span(), message, "there is: UGR");
-            }
+        if let Some(index) = parse(name.get_ref()) {
+            keys.push(index.key);
+        } else {
+            let known: Vec<&str> = INDICES.iter().map(|index| index.key).collect();
+            let message = format!("\"{}\" is no index that can be computed", name.get_ref());
+            context.error(&name.span(), message, &format!("there are: {}", known.join(", ")));
         }
     }
-    indices
+    keys
 }
 
 fn directions(

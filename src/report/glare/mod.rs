@@ -4,12 +4,14 @@
 mod check;
 mod csv;
 mod json;
+mod observed;
 mod png;
 mod text;
 
 pub use check::{check_png, check_svg};
 pub use csv::indices_csv;
 pub use json::images_json;
+pub use observed::{compared_text, observed_csv, observed_json, observed_text};
 pub use text::images_text;
 
 use crate::glare::of_image::ImageGlare;

@@ -1,0 +1,202 @@
+//! How an eye sees luminous surfaces (`emit`): each is cut into small pieces with their own direction,
+//! exact solid angle and visibility, since a luminous ceiling has no one place in the field of view.
+
+use glam::DVec3;
+
+use crate::rng::Rng;
+use crate::scene::{Channel, Scene};
+
+/// Solid angle above which a piece is cut into four, sr.
+const PIECE_SR: f64 = 0.004;
+/// Depth of cutting at which it ends: four million pieces of one triangle.
+const DEEPEST: u32 = 11;
+/// Rays by which the visibility of a piece is known; their spread is its error.
+const REPLICATES: usize = 16;
+
+/// A luminous surface as seen from one point, at full factor.
+#[derive(Clone, Debug)]
+pub struct Shining {
+    /// Index into the mesh's surfaces.
+    pub surface: usize,
+    /// Channel of its light.
+    pub channel: usize,
+    /// Emitted luminance, cd/m²; what it reflects besides belongs to the background.
+    pub luminance_cd_m2: f64,
+    /// Its pieces of which anything is visible.
+    pub pieces: Vec<Piece>,
+    /// Solid angle of the whole surface, hidden parts included, sr.
+    pub whole_sr: f64,
+    /// Area projected toward the eye, m².
+    pub projected_area_m2: f64,
+}
+
+/// A piece of a luminous surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Unit direction from the eye to its middle.
+    pub direction: DVec3,
+    /// Visible solid angle in each replicate, summed up from rays that met nothing opaque, sr.
+    pub visible_sr: f64,
+    /// The same, times the transmittance of panes before it, sr.
+    pub passed_sr: f64,
+    /// Standard error of `passed_sr`, sr; 0 where all of it is visible.
+    pub se_sr: f64,
+}
+
+/// All luminous surfaces of which anything is visible from `eye`. Draws from `seed` only.
+pub fn shining_from(scene: &Scene, eye: DVec3, seed: u64) -> Vec<Shining> {
+    shining_in_pieces(scene, eye, seed, PIECE_SR)
+}
+
+/// [`shining_from`] with pieces of at most `piece_sr`.
+pub fn shining_in_pieces(scene: &Scene, eye: DVec3, seed: u64, piece_sr: f64) -> Vec<Shining> {
+    let mesh = &scene.mesh;
+    let mut found: Vec<Shining> = Vec::new();
+    for triangle in 0..mesh.triangles.len() {
+        let luminance_cd_m2 = scene.bsdf(triangle as u32).emitted();
+        if !(luminance_cd_m2 > 0.0) {
+            continue;
+        }
+        let surface = mesh.triangles[triangle].surface as usize;
+        let material = mesh.surfaces[surface].material;
+        let Some(channel) = scene.channels.iter().position(|c| *c == Channel::Surfaces { material }) else {
+            continue;
+        };
+        let index = found.iter().position(|known| known.surface == surface).unwrap_or_else(|| {
+            found.push(Shining {
+                surface,
+                channel,
+                luminance_cd_m2,
+                pieces: Vec::new(),
+                whole_sr: 0.0,
+                projected_area_m2: 0.0,
+            });
+            found.len() - 1
+        });
+        let mut rng = Rng::new(seed, u64::MAX - 1, triangle as u64);
+        cut(scene, eye, mesh.corners(triangle), [0, DEEPEST], piece_sr, &mut rng, &mut found[index]);
+    }
+    found.retain(|surface| !surface.pieces.is_empty());
+    found
+}
+
+fn cut(
+    scene: &Scene,
+    eye: DVec3,
+    corners: [DVec3; 3],
+    [depth, deepest]: [u32; 2],
+    piece_sr: f64,
+    rng: &mut Rng,
+    shining: &mut Shining,
+) {
+    let solid_angle_sr = solid_angle(corners.map(|corner| corner - eye));
+    if !(solid_angle_sr > 0.0) {
+        return;
+    }
+    if solid_angle_sr > piece_sr && depth < deepest {
+        let [a, b, c] = corners;
+        let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            cut(scene, eye, part, [depth + 1, deepest], piece_sr, rng, shining);
+        }
+        return;
+    }
+    let [a, b, c] = corners;
+    let middle = (a + b + c) / 3.0;
+    let towards = middle - eye;
+    let normal = (b - a).cross(c - a);
+    let distance_m = towards.length();
+    shining.whole_sr += solid_angle_sr;
+    shining.projected_area_m2 += 0.5 * normal.dot(towards / distance_m).abs();
+    let (mut visible, mut passed, mut squares) = (0.0, 0.0, 0.0);
+    for replicate in 0..REPLICATES {
+        // Strata along one edge, random across: all parts of the piece are asked.
+        let along = ((replicate as f64 + rng.uniform()) / REPLICATES as f64).sqrt();
+        let across = rng.uniform();
+        let at = a + along * ((b - a) + across * (c - b));
+        let ray = at - eye;
+        let distance_m = ray.length();
+        let reach = distance_m - 2.0 * scene.tracer.offset_m();
+        let through = scene.tracer.transmittance(eye, ray / distance_m, reach, &[]);
+        visible += f64::from(u8::from(through > 0.0));
+        passed += through;
+        squares += through * through;
+    }
+    if passed > 0.0 {
+        let n = REPLICATES as f64;
+        let variance = (squares / n - (passed / n) * (passed / n)).max(0.0) / (n - 1.0);
+        shining.pieces.push(Piece {
+            direction: towards / distance_m,
+            visible_sr: solid_angle_sr * visible / n,
+            passed_sr: solid_angle_sr * passed / n,
+            se_sr: solid_angle_sr * variance.sqrt(),
+        });
+    }
+}
+
+/// Solid angle of a triangle seen from the origin, sr (Van Oosterom and Strackee 1983).
+fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let triple = a.dot(b.cross(c)).abs();
+    let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * triple.atan2(below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::mesh::Mesh;
+    use crate::material::{Bsdf, Material};
+
+    /// A luminous square of 1 m at z = 1 over an eye at the origin, and a dark plate of `cover` × 1 m
+    /// half way up that hides it from x = −0.5 (in the square's measure) on.
+    fn scene(cover: f64) -> Scene {
+        let mut mesh = Mesh::default();
+        let bright = mesh.add_surface("Panel", 0, false);
+        mesh.add_quad(
+            [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|[x, y]| DVec3::new(x, y, 1.0)),
+            bright,
+        );
+        let dark = mesh.add_surface("Plate", 1, false);
+        let plate = |x: f64, y: f64| DVec3::new(0.5 * x, 0.5 * y, 0.5);
+        let edge = -0.5 + cover.max(1e-6);
+        mesh.add_quad([plate(-0.5, -1.0), plate(edge, -1.0), plate(edge, 1.0), plate(-0.5, 1.0)], dark);
+        let materials = vec![
+            Material {
+                name: "Bright".into(),
+                bsdf: Bsdf::Emitter { luminance_cd_m2: 1000.0, reflectance: 0.0 },
+            },
+            Material { name: "Dark".into(), bsdf: Bsdf::Lambert { reflectance: 0.1 } },
+        ];
+        Scene::new(mesh, materials, Vec::new()).unwrap()
+    }
+
+    fn visible_sr(scene: &Scene, piece_sr: f64) -> f64 {
+        let seen = shining_in_pieces(scene, DVec3::ZERO, 1, piece_sr);
+        seen.iter().flat_map(|surface| &surface.pieces).map(|piece| piece.visible_sr).sum()
+    }
+
+    #[test]
+    fn a_square_fills_its_solid_angle_and_hidden_parts_do_not_count() {
+        // A square of half side s at distance 1: 4 asin(s²/(1 + s²)). Catches a lost factor, one
+        // triangle only, and visibility taken for all or nothing.
+        let whole = 4.0 * (0.25f64 / 1.25).asin();
+        assert!((visible_sr(&scene(0.0), PIECE_SR) / whole - 1.0).abs() < 1e-3);
+        let half = visible_sr(&scene(0.5), PIECE_SR);
+        assert!((half / whole - 0.5).abs() < 0.01, "{}", half / whole);
+        // An opaque plate over all of it: nothing is seen.
+        assert!(shining_from(&scene(1.0), DVec3::ZERO, 1).is_empty());
+    }
+
+    #[test]
+    fn a_plate_moving_across_hides_it_little_by_little() {
+        // Catches jumps: 2 % of the square at a time, never more than 4 % of its solid angle.
+        let whole = visible_sr(&scene(0.0), PIECE_SR);
+        let mut before = whole;
+        for step in 1..50 {
+            let now = visible_sr(&scene(f64::from(step) * 0.02), PIECE_SR);
+            assert!(before - now > 0.0 && before - now < 0.04 * whole, "{step}: {before} {now}");
+            before = now;
+        }
+    }
+}

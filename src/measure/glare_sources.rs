@@ -1,0 +1,269 @@
+//! What an eye sees → sources of the indices: luminaires and luminous surfaces in front of it, by a
+//! declared convention. Luminances come from the photometry, never from pixels.
+
+use glam::DVec3;
+
+use crate::emitters::{Emitters, Seen, Shining, Sighted};
+use crate::estimate::Estimate;
+use crate::glare::position_index::{Position, PositionModel};
+use crate::glare::propagate::SourceError;
+use crate::glare::source::{Extent, GlareSource};
+use crate::units::Nits;
+
+/// How a luminaire becomes a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SourceModel {
+    /// One source: intensity over projected area and solid angle of the far field, at the centre.
+    Centre,
+    /// One source: mean luminance and solid angle of the visible part, P at the opening's centre.
+    Visible,
+    /// Pieces, each with its own luminance, solid angle and P: Σ L²ω/P² converges to the integral.
+    Subdivided,
+}
+
+/// How glare is computed; every result names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Convention {
+    /// How a luminaire becomes a source.
+    pub sources: SourceModel,
+    /// Model of the position index.
+    pub position: PositionModel,
+}
+
+impl Default for Convention {
+    fn default() -> Self {
+        Self { sources: SourceModel::Visible, position: PositionModel::Table }
+    }
+}
+
+impl Convention {
+    /// In words, as printed.
+    pub fn words(self) -> String {
+        let sources = match self.sources {
+            SourceModel::Centre => "far field of the opening's centre",
+            SourceModel::Visible => "visible part, mean luminance",
+            SourceModel::Subdivided => "visible part, subdivided",
+        };
+        format!("{sources}; {}; L_b = E_ind/π", self.position.words())
+    }
+}
+
+/// A source that the indices count.
+#[derive(Clone, Debug)]
+pub struct Counted {
+    /// As the indices take it.
+    pub source: GlareSource,
+    /// Its relative errors.
+    pub error: SourceError,
+    /// Whose it is.
+    pub label: String,
+    /// Visible share.
+    pub visible_fraction: f64,
+}
+
+/// The sources of a view.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    /// Those that count.
+    pub counted: Vec<Counted>,
+    /// What is to be said about them.
+    pub notes: Vec<String>,
+    /// Illuminance of the eye straight from luminous surfaces with its standard error, lx.
+    pub surfaces_lx: [f64; 2],
+}
+
+/// The sources in front of an eye that looks along `gaze`; `weights` are of the channels.
+pub fn sources(
+    emitters: &Emitters,
+    sighted: &Sighted,
+    gaze: DVec3,
+    weights: &[f64],
+    convention: Convention,
+) -> Sources {
+    let frame = Frame::new(gaze, convention.position);
+    let mut found = Sources::default();
+    for one in &sighted.luminaires {
+        let weight = weights[emitters.sources[one.source].channel];
+        if weight > 0.0 && one.direction.dot(gaze) > 0.0 && one.normal_lx.value > 0.0 {
+            found.counted.extend(luminaire(emitters, one, weight, &frame, convention, &mut found.notes));
+        }
+    }
+    let mut variance = 0.0;
+    for surface in &sighted.surfaces {
+        let luminance = weights[surface.channel] * surface.luminance_cd_m2;
+        if !(luminance > 0.0) {
+            continue;
+        }
+        let [eye_lx, se_lx] = on_eye(surface, luminance, gaze);
+        found.surfaces_lx[0] += eye_lx;
+        variance += se_lx * se_lx;
+        let name = &emitters.scene.mesh.surfaces[surface.surface].name;
+        found.counted.extend(luminous_surface(surface, luminance, &frame, name, eye_lx, &mut found.notes));
+    }
+    found.surfaces_lx[1] = f64::sqrt(variance);
+    if sighted.surfaces.iter().any(|surface| weights[surface.channel] > 0.0) {
+        found.notes.push(
+            "luminous surfaces: emitted light in pieces with their own position index; what they reflect, and \
+             their images in mirrors, belong to the background"
+                .into(),
+        );
+    }
+    found.notes.sort();
+    found.notes.dedup();
+    found
+}
+
+/// The eye's axes and its model of P.
+struct Frame {
+    gaze: DVec3,
+    up: DVec3,
+    model: PositionModel,
+}
+
+impl Frame {
+    fn new(gaze: DVec3, model: PositionModel) -> Self {
+        Self { gaze, up: if gaze.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z }, model }
+    }
+
+    /// P, or `None` where the model ignores a source.
+    fn position(&self, direction: DVec3, notes: &mut Vec<String>) -> Option<f64> {
+        match self.model.position(self.gaze, self.up, direction) {
+            Position::Index(index) => Some(index),
+            Position::BelowTable(index) => {
+                let note = "a source lies below the line of sight: Iwata–Osterhaus position index";
+                if !notes.iter().any(|known| known == note) {
+                    notes.push(note.into());
+                }
+                Some(index)
+            }
+            Position::Ignored => None,
+        }
+    }
+}
+
+fn luminaire(
+    emitters: &Emitters,
+    one: &Seen,
+    weight: f64,
+    frame: &Frame,
+    convention: Convention,
+    notes: &mut Vec<String>,
+) -> Option<Counted> {
+    let cos = one.direction.dot(frame.gaze);
+    let area_sr = one.solid_angle_sr.value;
+    let is_point = !(area_sr > 0.0);
+    let (luminance, solid_angle_sr, position_index) = match convention.sources {
+        SourceModel::Subdivided if !is_point => {
+            let pieces = one.pieces.iter().map(|piece| {
+                (piece.direction, piece.visible_sr, weight * piece.normal_lx / piece.visible_sr)
+            });
+            merged(pieces, frame, notes)?
+        }
+        SourceModel::Centre if !is_point => {
+            let far = weight * one.centre_lx * one.distance_m * one.distance_m / one.projected_area_m2;
+            let size_sr = one.projected_area_m2 / (one.distance_m * one.distance_m) * one.visible_fraction;
+            (far, size_sr, frame.position(one.direction, notes)?)
+        }
+        SourceModel::Centre | SourceModel::Visible | SourceModel::Subdivided => {
+            let luminance = weight * one.luminance_cd_m2().unwrap_or(0.0);
+            (luminance, area_sr, frame.position(one.direction, notes)?)
+        }
+    };
+    let relative = |estimate: Estimate| if estimate.value > 0.0 { estimate.se / estimate.value } else { 0.0 };
+    Some(Counted {
+        source: GlareSource {
+            luminance: Nits(luminance),
+            solid_angle_sr,
+            position_index,
+            off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
+            eye_lx: weight * one.normal_lx.value * cos,
+            extent: Some(Extent {
+                projected_area_m2: one.projected_area_m2,
+                intensity_cd: weight * one.normal_lx.value * one.distance_m * one.distance_m,
+                distance_m: one.distance_m,
+            }),
+        },
+        error: SourceError { light: relative(one.normal_lx), solid_angle: relative(one.solid_angle_sr) },
+        label: label(emitters, one.source),
+        visible_fraction: one.visible_fraction,
+    })
+}
+
+/// Pieces (direction, sr, cd/m²) as one source with the same Σ L²ω/P²: luminance, solid angle, P.
+///
+/// 1/P² is the mean over the solid angle, L² the mean weighted by ω/P². A piece that the model ignores
+/// adds to the solid angle and not to the sum.
+fn merged(
+    pieces: impl Iterator<Item = (DVec3, f64, f64)>,
+    frame: &Frame,
+    notes: &mut Vec<String>,
+) -> Option<(f64, f64, f64)> {
+    let (mut size_sr, mut weighted_sr, mut squares) = (0.0, 0.0, 0.0);
+    for (direction, piece_sr, luminance) in pieces {
+        if !(direction.dot(frame.gaze) > 0.0 && piece_sr > 0.0) {
+            continue;
+        }
+        size_sr += piece_sr;
+        if let Some(index) = frame.position(direction, notes) {
+            weighted_sr += piece_sr / (index * index);
+            squares += luminance * luminance * piece_sr / (index * index);
+        }
+    }
+    (weighted_sr > 0.0)
+        .then(|| (f64::sqrt(squares / weighted_sr), size_sr, f64::sqrt(size_sr / weighted_sr).max(1.0)))
+}
+
+/// Illuminance on the plane of the eye straight from a luminous surface, with its standard error, lx.
+fn on_eye(surface: &Shining, luminance: f64, gaze: DVec3) -> [f64; 2] {
+    let (mut light, mut variance) = (0.0, 0.0);
+    for piece in &surface.pieces {
+        let cos = piece.direction.dot(gaze).max(0.0);
+        light += luminance * piece.passed_sr * cos;
+        variance += (luminance * piece.se_sr * cos).powi(2);
+    }
+    [light, f64::sqrt(variance)]
+}
+
+fn luminous_surface(
+    surface: &Shining,
+    luminance: f64,
+    frame: &Frame,
+    name: &str,
+    eye_lx: f64,
+    notes: &mut Vec<String>,
+) -> Option<Counted> {
+    let ahead = || surface.pieces.iter().filter(|piece| piece.direction.dot(frame.gaze) > 0.0);
+    let pieces = ahead()
+        .map(|piece| (piece.direction, piece.visible_sr, luminance * piece.passed_sr / piece.visible_sr));
+    let (mean, solid_angle_sr, position_index) = merged(pieces, frame, notes)?;
+    let passed_sr: f64 = ahead().map(|piece| piece.passed_sr).sum();
+    let se_sr = f64::sqrt(ahead().map(|piece| piece.se_sr * piece.se_sr).sum());
+    let visible_sr: f64 = surface.pieces.iter().map(|piece| piece.visible_sr).sum();
+    let cos = eye_lx / (luminance * passed_sr);
+    let distance_m = f64::sqrt(surface.projected_area_m2 / surface.whole_sr);
+    Some(Counted {
+        source: GlareSource {
+            luminance: Nits(mean),
+            solid_angle_sr,
+            position_index,
+            off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
+            eye_lx,
+            extent: Some(Extent {
+                projected_area_m2: surface.projected_area_m2,
+                intensity_cd: mean * surface.projected_area_m2,
+                distance_m,
+            }),
+        },
+        // Visibility moves light and solid angle together.
+        error: SourceError { light: se_sr / passed_sr, solid_angle: se_sr / passed_sr },
+        label: format!("{name} (luminous surface)"),
+        visible_fraction: visible_sr / surface.whole_sr,
+    })
+}
+
+fn label(emitters: &Emitters, index: usize) -> String {
+    let source = &emitters.sources[index];
+    let luminaire = emitters.luminaire(source);
+    let image = if source.mirror.is_some() { ", mirrored" } else { "" };
+    format!("{} #{} ({}{image})", luminaire.kind.name, source.luminaire + 1, luminaire.group)
+}

@@ -1,0 +1,191 @@
+//! `gershun glare PROJECT`: the observers' glare as text, CSV and JSON.
+
+use serde::Serialize;
+
+use super::super::ReportError;
+use super::super::number::{figures, fixed};
+use super::super::words::Lang;
+use super::super::xml::{printable, put};
+use crate::observe::Observed;
+use crate::outcome::Interval;
+use crate::units::Undefined;
+
+const LANG: Lang = Lang::En;
+
+/// Every direction of every observer; the worst is marked.
+pub fn observed_text(observed: &[Observed]) -> String {
+    let mut text = String::new();
+    let mut before = "";
+    for view in observed {
+        if view.viewpoint != before {
+            let eye = view.eye.to_array().map(|metres| fixed(LANG, metres, 2)).join(", ");
+            put(
+                &mut text,
+                format_args!("{} at {eye} m, light scene {}\n", printable(&view.viewpoint), view.light_scene),
+            );
+            before = &view.viewpoint;
+        }
+        let mark = if view.worst { "  worst direction" } else { "" };
+        put(
+            &mut text,
+            format_args!(
+                "  azimuth {:>6}°, tilt {:>5}°: UGR {}; L_b {} cd/m², E_v {} lx{mark}\n",
+                fixed(LANG, view.azimuth_deg, 1),
+                fixed(LANG, view.tilt_deg, 1),
+                estimate(&view.ugr, 1),
+                figures(LANG, view.background_cd_m2, 3),
+                figures(LANG, view.e_v_lx, 3),
+            ),
+        );
+        for index in &view.indices {
+            let unit = if index.unit == "1" { String::new() } else { format!(" {}", index.unit) };
+            let notes = index.notes.join("; ");
+            let line = format!("      {:<8} {}{unit}  {notes}", index.key, estimate(&index.estimate, 3));
+            put(&mut text, format_args!("{}\n", line.trim_end()));
+        }
+    }
+    if let Some(first) = observed.first() {
+        put(&mut text, format_args!("convention: {}; initial flux\n", first.convention.words()));
+    }
+    text
+}
+
+/// UGR of every direction by every convention, and how far they lie apart.
+pub fn compared_text(observed: &[Observed]) -> String {
+    let mut text = String::new();
+    let same = |a: &Observed, b: &Observed| {
+        a.viewpoint == b.viewpoint
+            && a.azimuth_deg.to_bits() == b.azimuth_deg.to_bits()
+            && a.tilt_deg.to_bits() == b.tilt_deg.to_bits()
+    };
+    for (position, view) in observed.iter().enumerate() {
+        if observed[..position].iter().any(|earlier| same(earlier, view)) {
+            continue;
+        }
+        put(
+            &mut text,
+            format_args!(
+                "{}, azimuth {}°, tilt {}°\n",
+                printable(&view.viewpoint),
+                fixed(LANG, view.azimuth_deg, 1),
+                fixed(LANG, view.tilt_deg, 1)
+            ),
+        );
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for other in observed.iter().filter(|other| same(other, view)) {
+            if let Ok(ugr) = &other.ugr {
+                (least, most) = (least.min(ugr.value), most.max(ugr.value));
+            }
+            put(
+                &mut text,
+                format_args!("  UGR {:<22} {}\n", estimate(&other.ugr, 2), other.convention.words()),
+            );
+        }
+        if most > least {
+            put(&mut text, format_args!("  conventions differ by up to {}\n", fixed(LANG, most - least, 2)));
+        }
+    }
+    text
+}
+
+fn estimate(value: &Result<Interval, Undefined>, decimals: usize) -> String {
+    match value {
+        Ok(ugr) => format!(
+            "{} ({}...{})",
+            fixed(LANG, ugr.value, decimals),
+            fixed(LANG, ugr.lo, decimals),
+            fixed(LANG, ugr.hi, decimals)
+        ),
+        Err(undefined) => format!("- ({undefined})"),
+    }
+}
+
+#[derive(Serialize)]
+struct View<'a> {
+    viewpoint: &'a str,
+    light_scene: &'a str,
+    eye_m: [f64; 3],
+    azimuth_deg: f64,
+    tilt_deg: f64,
+    convention: String,
+    indices: Vec<Value<'a>>,
+    background_cd_m2: f64,
+    e_v_lx: f64,
+    worst: bool,
+}
+
+#[derive(Serialize)]
+struct Value<'a> {
+    index: &'a str,
+    unit: &'a str,
+    estimate: Option<Interval>,
+    undefined: Option<&'a str>,
+}
+
+/// The values of a view: UGR first.
+fn values(view: &Observed) -> Vec<Value<'_>> {
+    fn one<'a>(index: &'a str, unit: &'a str, estimate: &'a Result<Interval, Undefined>) -> Value<'a> {
+        let undefined = estimate.as_ref().err().map(|undefined| undefined.reason.as_str());
+        Value { index, unit, estimate: estimate.as_ref().ok().copied(), undefined }
+    }
+    let further = view.indices.iter().map(|index| one(&index.key, &index.unit, &index.estimate));
+    std::iter::once(one("UGR", "1", &view.ugr)).chain(further).collect()
+}
+
+/// An array of views.
+///
+/// # Errors
+/// Where a value cannot be encoded.
+pub fn observed_json(observed: &[Observed]) -> Result<String, ReportError> {
+    let views: Vec<View> = observed
+        .iter()
+        .map(|view| View {
+            viewpoint: &view.viewpoint,
+            light_scene: &view.light_scene,
+            eye_m: view.eye.to_array(),
+            azimuth_deg: view.azimuth_deg,
+            tilt_deg: view.tilt_deg,
+            convention: view.convention.words(),
+            indices: values(view),
+            background_cd_m2: view.background_cd_m2,
+            e_v_lx: view.e_v_lx,
+            worst: view.worst,
+        })
+        .collect();
+    Ok(serde_json::to_string_pretty(&views)? + "\n")
+}
+
+/// A row for every view and index.
+///
+/// # Errors
+/// Where a value cannot be encoded.
+pub fn observed_csv(observed: &[Observed]) -> Result<String, ReportError> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,worst,undefined";
+    writer.write_record(header.split(','))?;
+    for view in observed {
+        for value in values(view) {
+            let of = |pick: fn(&Interval) -> f64| {
+                value.estimate.as_ref().map_or(String::new(), |estimate| pick(estimate).to_string())
+            };
+            writer.write_record([
+                view.viewpoint.clone(),
+                view.light_scene.clone(),
+                view.azimuth_deg.to_string(),
+                view.tilt_deg.to_string(),
+                value.index.to_owned(),
+                view.convention.words(),
+                of(|estimate| estimate.value),
+                of(|estimate| estimate.se),
+                of(|estimate| estimate.lo),
+                of(|estimate| estimate.hi),
+                view.background_cd_m2.to_string(),
+                view.e_v_lx.to_string(),
+                view.worst.to_string(),
+                value.undefined.unwrap_or_default().to_owned(),
+            ])?;
+        }
+    }
+    let bytes = writer.into_inner().expect("a vector takes any bytes");
+    Ok(String::from_utf8(bytes).expect("only text was written"))
+}

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use gershun::lamp::convert::Target;
 use gershun::lamp::{self, RULES, Severity, installed, rules};
 use gershun::photometry::Finding;
-use gershun::project::{LoadOptions, is_same_file, load, read_photometry, suggestion};
+use gershun::project::{LoadOptions, Project, is_same_file, load, read_photometry, suggestion};
 use gershun::report::words::Lang;
 use gershun::report::{lamp as report, write_file};
 use gershun::solve::far_field::{self, FarDemand};
@@ -143,6 +143,32 @@ fn convert(input: &Path, output: &Path) -> Result<u8, String> {
     write_file(output, &converted.bytes).map_err(|error| error.to_string())?;
     let told: Vec<String> = converted.dropped.iter().map(|what| format!("dropped: {what}\n")).collect();
     Ok(say(&format!("{}\n{}", output.display(), told.concat())))
+}
+
+/// A line on standard error for each photometric file of a project that has faults.
+pub fn warn(path: &Path, project: &Project) {
+    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+    let luminaires = project.worlds.iter().flat_map(|world| &world.scene.luminaires);
+    let mut files: Vec<&str> = luminaires.map(|luminaire| luminaire.kind.file.as_str()).collect();
+    files.sort_unstable();
+    files.dedup();
+    for file in files.into_iter().filter(|file| !file.is_empty()) {
+        let path = folder.join(file);
+        let Ok(bytes) = read_photometry(&path) else { continue };
+        let Ok(lamps) = lamp::read(&bytes, file) else { continue };
+        let mut codes: Vec<&str> = lamps
+            .iter()
+            .flat_map(|lamp| &lamp.findings)
+            .map(|finding| finding.code)
+            .filter(|code| rules::severity(code) != Severity::Note)
+            .collect();
+        codes.sort_unstable();
+        codes.dedup();
+        if !codes.is_empty() {
+            let (codes, path) = (codes.join(", "), path.display());
+            eprintln!("warning: {file}: {codes}; `gershun lamp lint {path}` says what follows from it");
+        }
+    }
 }
 
 /// Steps of angle that a table may have, degrees.

@@ -18,7 +18,7 @@ use crate::luminaire::Luminaire;
 use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
-pub use direct::{AS_POINT, TOLERANCE, integrated, unshadowed};
+pub use direct::{TOLERANCE, unshadowed};
 pub use images::Mirror;
 pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
@@ -76,6 +76,11 @@ impl Source {
     pub fn is_point(&self) -> bool {
         !(self.radius_m > 0.0)
     }
+
+    /// A point in the luminaire frame.
+    fn place(&self, point: DVec3) -> DVec3 {
+        self.world_from_luminaire.transpose() * (point - self.position)
+    }
 }
 
 impl<'s> Emitters<'s> {
@@ -93,9 +98,10 @@ impl<'s> Emitters<'s> {
                 position: luminaire.position,
                 world_from_luminaire: luminaire.world_from_luminaire,
                 area_m2: luminaire.kind.opening.area_m2(),
-                radius_m: match luminaire.kind.opening.is_point() {
-                    true => 0.0,
-                    false => luminaire.kind.opening.radius_m(),
+                radius_m: if luminaire.kind.opening.is_point() {
+                    0.0
+                } else {
+                    luminaire.kind.opening.radius_m()
                 },
                 opening: luminaire.kind.opening,
                 dim: luminaire.dim,
@@ -155,13 +161,8 @@ impl<'s> Emitters<'s> {
         u: [f64; 2],
         wanted: impl FnOnce(DVec3) -> bool,
     ) -> Option<Arrival> {
-        let shine = source.opening.shine(self.place(source, point), u)?;
+        let shine = source.opening.shine(source.place(point), u)?;
         self.arrival_from(source, point, shine, wanted)
-    }
-
-    /// A point in the luminaire frame of a source.
-    fn place(&self, source: &Source, point: DVec3) -> DVec3 {
-        source.world_from_luminaire.transpose() * (point - source.position)
     }
 
     #[inline]

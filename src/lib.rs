@@ -144,18 +144,6 @@ pub fn run(project: &Project, settings: &Settings, watch: &Watch) -> Result<Outc
     Ok(total.outcome(project, settings))
 }
 
-/// How the direct light was computed, where that was a choice.
-fn near_field(prepared: &solve::Prepared) -> Option<String> {
-    let (points, all) = prepared.as_points();
-    (points > 0).then(|| {
-        format!(
-            "direct light: {points} of {all} pairs of point and luminaire by the point law, which changes each by \
-             less than {:e}; the others integrated over the opening",
-            emitters::AS_POINT
-        )
-    })
-}
-
 /// Why a world's blocks ended, in order of gravity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Stop {
@@ -198,7 +186,6 @@ fn solve_world(
 ) -> Stop {
     let seed = project.accuracy.seed;
     let prepared = solve::prepare(&world.scene, &plan.demand, settings.method, settings.effort, seed);
-    total.plan.extend(near_field(&prepared));
     let seen = seen_by_views(plan, prepared.emitters(), seed);
     let tables = assemble::ugr_tables(&mut total.tables, project, world, plan);
     let alpha = 1.0 - project.accuracy.confidence;

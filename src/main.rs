@@ -108,7 +108,12 @@ fn graver(a: u8, b: u8) -> u8 {
 
 fn load_one(path: &Path, check: &Check) -> Option<Project> {
     match load(path, &check.load_options()) {
-        Ok(project) => Some(project),
+        Ok(project) => {
+            if !check.quiet {
+                commands_lamp::warn(path, &project);
+            }
+            Some(project)
+        }
         Err(diagnostics) => {
             for diagnostic in &diagnostics {
                 eprintln!("{diagnostic}\n");

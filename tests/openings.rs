@@ -7,7 +7,7 @@ mod common;
 use std::f64::consts::{PI, TAU};
 
 use common::{lambert, lamp, room};
-use gershun::emitters::{Emitters, integrated};
+use gershun::emitters::{Emitters, unshadowed};
 use gershun::estimate::Estimate;
 use gershun::luminaire::Luminaire;
 use gershun::photometry::{IntensityDistribution, Opening};
@@ -136,7 +136,7 @@ fn worst_difference(of_desk: Opening, of_eye: Opening) -> f64 {
         let point = source.position + scenes[0].luminaires[0].world_from_luminaire * down * distance;
         let kernel =
             [Kernel::Spherical, Kernel::Planar { normal: (source.position - point).normalize() }][k / 4 % 2];
-        let desk = integrated(&emitters[0], source, point, &kernel);
+        let desk = unshadowed(&emitters[0], source, point, &kernel);
         let eye = by_rays(&emitters[1], point, &kernel);
         worst = worst.max((desk / eye - 1.0).abs());
     }
@@ -242,7 +242,7 @@ fn a_sphere_lights_like_a_point_at_its_centre() {
     let emitters = Emitters::new(&scene);
     for distance in [0.21, 0.3, 1.0, 10.0] {
         let point = DVec3::new(20.0, 20.0, 3.0 - distance);
-        let found = integrated(&emitters, &emitters.sources[0], point, &Kernel::Planar { normal: DVec3::Z });
+        let found = unshadowed(&emitters, &emitters.sources[0], point, &Kernel::Planar { normal: DVec3::Z });
         let truth = 100.0 / (distance * distance);
         assert!((found / truth - 1.0).abs() < 2e-4, "{distance} m: {found} lx, not {truth}");
     }

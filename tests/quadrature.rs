@@ -4,7 +4,7 @@
 
 mod common;
 
-use gershun::emitters::{AS_POINT, Emitters, TOLERANCE, integrated, unshadowed};
+use gershun::emitters::{Emitters, TOLERANCE, unshadowed};
 use gershun::photometry::{IntensityDistribution, Opening};
 use gershun::project::{LoadOptions, load};
 use gershun::query::Kernel;
@@ -29,7 +29,7 @@ fn the_error_of_direct_light_is_below_what_the_report_says() {
         let kernel = kernels[index % 3];
         let (mut total, mut exact, mut error) = (0.0, 0.0, 0.0);
         for source in &emitters.sources[..project.worlds[0].scene.luminaires.len()] {
-            let (found, _) = unshadowed(&emitters, source, point, &kernel);
+            let found = unshadowed(&emitters, source, point, &kernel);
             let n = 240;
             let mut fine = 0.0;
             for i in 0..n {
@@ -53,9 +53,10 @@ fn the_error_of_direct_light_is_below_what_the_report_says() {
 }
 
 /// 600 panels of 1.2 × 0.3 m with a table of 5° steps, 9 m above a floor of 100 × 60 m: most pairs of
-/// point and luminaire are far apart. Catches: the switch to points taken where it costs accuracy.
+/// point and luminaire are far apart, and yet the point law is exact to 1e-4 for few of them: why there is no
+/// switch to it. Catches: that reason going away, and a point law that errs near by.
 #[test]
-fn far_panels_are_points_where_that_changes_nothing() {
+fn few_panels_could_be_points_even_in_a_hall() {
     let gammas: Vec<f64> = (0..=18).map(|k| 5.0 * f64::from(k)).collect();
     let beam = |gamma: &f64| 3000.0 * gamma.to_radians().cos().powi(3);
     let plane: Vec<f64> = gammas.iter().map(beam).collect();
@@ -71,25 +72,21 @@ fn far_panels_are_points_where_that_changes_nothing() {
     let points: Vec<DVec3> = (0..100)
         .map(|k| DVec3::new(9.7 * f64::from(k % 10) + 3.1, 5.9 * f64::from(k / 10) + 2.3, 0.0))
         .collect();
-    let timed = |value: &dyn Fn(DVec3) -> (f64, usize)| {
-        let start = common::cpu_seconds();
-        let values: Vec<(f64, usize)> = points.iter().map(|point| value(*point)).collect();
-        (values, common::cpu_seconds() - start)
-    };
-    let (switched, with_s) = timed(&|point| {
-        sources.iter().fold((0.0, 0), |(lx, count), source| {
-            let (one, as_point) = unshadowed(&emitters, source, point, &kernel);
-            (lx + one, count + usize::from(as_point))
-        })
-    });
-    let (whole, without_s) =
-        timed(&|point| (sources.iter().map(|source| integrated(&emitters, source, point, &kernel)).sum(), 0));
-    let errors = switched.iter().zip(&whole).map(|((a, _), (b, _))| (a / b - 1.0).abs());
-    let worst = errors.fold(0.0, f64::max);
-    let taken: usize = switched.iter().map(|(_, count)| count).sum();
+    let (mut taken, mut near) = (0, 0f64);
+    for point in &points {
+        for source in sources {
+            let whole = unshadowed(&emitters, source, *point, &kernel);
+            let centre = emitters.arrival(source, *point, [0.5, 0.5]);
+            let change = (centre.normal_lx * kernel.response(centre.direction) / whole - 1.0).abs();
+            taken += usize::from(change <= 1e-4);
+            near = near.max(change);
+        }
+    }
+    let share = taken as f64 / (600.0 * points.len() as f64);
     println!(
-        "hall: {:.1} % of pairs taken as points, worst change {worst:.1e}; {with_s:.2} s with, {without_s:.2} s without",
-        100.0 * taken as f64 / (600.0 * points.len() as f64)
+        "hall: the point law is within 1e-4 for {:.1} % of pairs, at worst it errs by {near:.1e}",
+        100.0 * share
     );
-    assert!(taken > 0 && worst <= AS_POINT, "{worst:e}");
+    assert!(share < 0.25, "a switch to points may pay now: {share}");
+    assert!(near > TOLERANCE, "the point law errs by {near:e} at most, so this test measures nothing");
 }

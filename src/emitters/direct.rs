@@ -12,8 +12,6 @@ use crate::query::Kernel;
 /// Largest error of the unshadowed light of an observer's or receiver's luminaires, as a share of
 /// their illuminance; tests/quadrature.rs measures it on tabulated luminaires.
 pub const TOLERANCE: f64 = 5e-4;
-/// A luminaire counts as a point where that changes its light by no more than this share.
-pub const AS_POINT: f64 = 1e-4;
 /// The quadrature splits while its two rules differ by more than this share of a luminaire's light.
 const AGREEMENT: f64 = 1e-4;
 /// Nearer than this many opening radii the opening is split at least once: two coarse rules may
@@ -26,26 +24,14 @@ const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_13, 0.5), (0.788_675_134
 const GAUSS3: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// Illuminance in lx at `point` by `kernel` from a luminaire, as if nothing stood between, and whether the
-/// luminaire was taken as a point: where the point law and a rule of four points agree to [`AS_POINT`].
-pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &Kernel) -> (f64, bool) {
-    let far = source.position.distance(point) >= NEAR * source.radius_m;
-    if source.is_point() || !far || !source.opening.is_flat() {
-        return (integrated(emitters, source, point, kernel), false);
-    }
-    let value = |u: [f64; 2]| {
-        let arrival = emitters.arrival(source, point, u);
-        arrival.normal_lx * kernel.response(arrival.direction)
-    };
-    let (centre, around) = (value([0.5, 0.5]), product(&GAUSS2, [0.0, 0.0], 1.0, &value));
-    if (centre - around).abs() <= AS_POINT * around {
-        return (centre, true);
-    }
-    (integrated(emitters, source, point, kernel), false)
-}
-
-/// The same, always integrated over the opening.
-pub fn integrated(emitters: &Emitters, source: &Source, point: DVec3, kernel: &Kernel) -> f64 {
+/// Illuminance in lx at `point` by `kernel` from a luminaire, as if nothing stood between.
+///
+/// There is no switch to the point law, at any distance. It would be allowed where it changes a
+/// luminaire's light by less than 1e-4, and tests/quadrature.rs measures how often that is: for 8 % of the
+/// pairs of point and luminaire in a hall of 100 × 60 m with 600 panels, and for none in an office. The bend
+/// of an intensity table matters farther out than the size does. Finding out costs five intensities where
+/// integrating costs thirteen, so a switch made the hall's direct light dearer, 0.27 s for 0.21 s.
+pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &Kernel) -> f64 {
     let value = |u: [f64; 2]| {
         let arrival = emitters.arrival(source, point, u);
         arrival.normal_lx * kernel.response(arrival.direction)
@@ -73,7 +59,7 @@ pub fn integrated(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
     let pieces = luminaire.kind.opening.pieces();
     if pieces > 0 {
         // Piece by piece, since a rule across an edge would see a jump.
-        let place = emitters.place(source, point);
+        let place = source.place(point);
         let least = if cut { 4 } else { near };
         let shone = |piece: usize| {
             integral(least, &|u| {

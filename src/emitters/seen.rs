@@ -87,7 +87,7 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<Seen
     let mut whole = 0.0;
     let mut passed_sum = 0.0;
     let points = if source.is_point() { 1 } else { POINTS };
-    let place = emitters.place(source, eye);
+    let place = source.place(eye);
     let mut cells = [(DVec3::ZERO, 0.0, 0.0); PIECES * PIECES];
     for _ in 0..REPLICATES {
         let sequence = Stratified::new(&mut rng);

@@ -76,7 +76,6 @@ pub fn to_ldt(photometry: &Photometry) -> Vec<u8> {
 /// from the sides.
 fn sizes_m(opening: Opening) -> [f64; 6] {
     match opening {
-        Opening::Point => [0.0; 6],
         Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
             [length_m, width_m, side_y_m, side_x_m, side_y_m, side_x_m]
         }
@@ -94,7 +93,7 @@ fn sizes_m(opening: Opening) -> [f64; 6] {
             box_like([length_m, width_m], opening.area_m2(), sides)
         }
         // No place for an upright plane; a thin box would be given a front that the plane has not.
-        Opening::Upright { .. } => [0.0; 6],
+        Opening::Point | Opening::Upright { .. } => [0.0; 6],
     }
 }
 

@@ -107,8 +107,6 @@ pub struct Prepared<'s> {
     bound_m2: f64,
     /// Per row and source: unshadowed illuminance, lx.
     unshadowed: Vec<Vec<f64>>,
-    /// Pairs of row and luminaire in it that were taken as points.
-    as_points: u64,
     /// First row of each receiver.
     first_rows: Vec<usize>,
 }
@@ -179,9 +177,9 @@ pub fn prepare<'s>(
         Method::Links => Some(prepare::field(&emitters, &effort, seed)),
         Method::Path | Method::Local | Method::Double => None,
     };
-    let (unshadowed, as_points) = match method {
+    let unshadowed = match method {
         Method::Links | Method::Local | Method::Double => unshadowed_rows(&emitters, demand),
-        Method::Path => (Vec::new(), 0),
+        Method::Path => Vec::new(),
     };
     let origins = match method {
         Method::Local | Method::Double => Some(chains::Origins::new(scene)),
@@ -198,7 +196,6 @@ pub fn prepare<'s>(
         origins,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,
-        as_points,
         first_rows: demand.first_rows(),
     }
 }
@@ -222,22 +219,16 @@ impl Prepared<'_> {
         &self.emitters
     }
 
-    /// Pairs of a receiver's kernel and a luminaire whose direct light is that of a point, and all pairs.
-    pub fn as_points(&self) -> (u64, u64) {
-        (self.as_points, self.unshadowed.iter().map(|row| row.len() as u64).sum())
-    }
-
     /// Number of stored patches, for the result's record.
     pub fn patches(&self) -> usize {
         self.field.as_ref().map_or(0, |field| field.patches().len())
     }
 }
 
-/// Unshadowed illuminance of every kernel row from every luminaire (images excluded), and how many of
-/// these pairs were taken as points.
-fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> (Vec<Vec<f64>>, u64) {
+/// Unshadowed illuminance of every kernel row from every luminaire (images excluded).
+fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
     use rayon::prelude::*;
-    let rows: Vec<(Vec<f64>, Vec<bool>)> = demand
+    demand
         .receivers
         .par_iter()
         .flat_map_iter(|receiver| {
@@ -245,13 +236,10 @@ fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> (Vec<Vec<f64>>, u64)
             let point = receiver.point;
             receiver.kernels.iter().map(move |kernel| {
                 let own = &emitters.sources[..emitters.scene.luminaires.len()];
-                own.iter().map(|source| unshadowed(emitters, source, point, kernel)).unzip()
+                own.iter().map(|source| unshadowed(emitters, source, point, kernel)).collect()
             })
         })
-        .collect();
-    let as_points =
-        rows.iter().flat_map(|(_, as_point)| as_point).filter(|as_point| **as_point).count() as u64;
-    (rows.into_iter().map(|(row, _)| row).collect(), as_points)
+        .collect()
 }
 
 /// The point moved off a surface it may lie on.

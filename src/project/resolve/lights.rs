@@ -50,14 +50,13 @@ pub fn add(scene: Option<&At<SceneSection>>, drafts: &mut [Draft], context: &mut
             context.note(format!("{label}: its range of {range_m} m is ignored, light goes on"));
         }
         let known = kinds.iter().find(|(kind, _)| *kind == light.kind).map(|(_, index)| *index);
-        let index = match known {
-            Some(index) => index,
-            None => {
-                let Some(kind) = kind_of(light, &label, file, wanted, context) else { continue };
-                kinds.push((light.kind.clone(), types.len()));
-                types.push(kind);
-                types.len() - 1
-            }
+        let index = if let Some(index) = known {
+            index
+        } else {
+            let Some(kind) = kind_of(light, &label, file, wanted, context) else { continue };
+            kinds.push((light.kind.clone(), types.len()));
+            types.push(kind);
+            types.len() - 1
         };
         let hanging = Hanging { kind: index, group: light.name.clone(), rotate_deg: 0.0, dim: 1.0 };
         let aim = if light.direction == DVec3::ZERO { DVec3::NEG_Z } else { light.direction };

@@ -102,7 +102,7 @@ pub fn profile(
     let bytes = match context.read_path(&file, SMALL_FILE) {
         Ok(bytes) => bytes,
         Err((message, hint)) => {
-            context.error(&wanted.span(), format!("{label}: {message}"), &hint);
+            context.error(&wanted.span(), format!("{label}: {message}"), hint);
             return None;
         }
     };

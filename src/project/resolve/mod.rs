@@ -3,6 +3,7 @@
 
 mod area_surface;
 mod areas;
+mod bodies;
 mod cad;
 mod draft;
 mod furniture;
@@ -82,13 +83,16 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
 
 fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World> {
     match Scene::new_with(draft.mesh, draft.materials, draft.luminaires, context.simd) {
-        Ok(scene) => Some(World {
-            scene,
-            rooms: draft.rooms,
-            areas: draft.areas,
-            viewpoints: draft.viewpoints,
-            requirements: draft.requirements,
-        }),
+        Ok(scene) => {
+            bodies::check(&scene, context);
+            Some(World {
+                scene,
+                rooms: draft.rooms,
+                areas: draft.areas,
+                viewpoints: draft.viewpoints,
+                requirements: draft.requirements,
+            })
+        }
         Err(error) => {
             let span = match &error {
                 SceneError::NoAbsorption(name) => palette.span(name),

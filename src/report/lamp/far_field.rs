@@ -10,7 +10,7 @@ use crate::lamp::c_deg;
 use crate::solve::far_field::FarField;
 
 #[derive(Serialize)]
-struct Value {
+struct Figure {
     value: f64,
     se: f64,
     lo: f64,
@@ -26,12 +26,12 @@ struct Node {
 }
 
 #[derive(Serialize)]
-struct Table {
+struct Listing {
     emitted_lm: f64,
-    escaped_lm: Value,
-    lor: Value,
-    blurred_lm: Value,
-    table_lm: Value,
+    escaped_lm: Figure,
+    lor: Figure,
+    blurred_lm: Figure,
+    table_lm: Figure,
     blocks: usize,
     nodes: Vec<Node>,
 }
@@ -77,7 +77,7 @@ fn half(value: Estimate) -> f64 {
 /// # Errors
 /// Where a value cannot be encoded.
 pub fn json(field: &FarField) -> Result<String, ReportError> {
-    let shown = |value: Estimate, unit: f64| Value {
+    let shown = |value: Estimate, unit: f64| Figure {
         value: value.value / unit,
         se: value.se / unit,
         lo: (value.value - half(value)) / unit,
@@ -92,7 +92,7 @@ pub fn json(field: &FarField) -> Result<String, ReportError> {
         };
         field.gammas_deg.iter().zip(plane).map(node)
     });
-    let table = Table {
+    let table = Listing {
         emitted_lm: field.emitted_lm,
         escaped_lm: shown(field.escaped_lm, 1.0),
         lor: shown(field.escaped_lm, field.emitted_lm),

@@ -17,7 +17,7 @@ use crate::photometry::Opening;
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, unshadowed};
-pub use images::Mirror;
+pub use images::{Mirror, planes};
 pub use seen::{Seen, seen_from};
 
 /// All luminaires of a scene and their images.
@@ -65,6 +65,19 @@ pub struct Arrival {
     pub normal_lx: f64,
 }
 
+impl Source {
+    /// Its image in a plane.
+    #[must_use]
+    pub fn image(&self, plane: &Mirror, mirror: Option<usize>) -> Self {
+        Self {
+            mirror,
+            position: plane.image(self.position),
+            world_from_luminaire: plane.reflection() * self.world_from_luminaire,
+            ..self.clone()
+        }
+    }
+}
+
 impl<'s> Emitters<'s> {
     /// Collects luminaires and their images.
     pub fn new(scene: &'s Scene) -> Self {
@@ -87,13 +100,7 @@ impl<'s> Emitters<'s> {
             .collect();
         for (index, mirror) in mirrors.iter().enumerate() {
             for luminaire in 0..scene.luminaires.len() {
-                let original = &sources[luminaire];
-                let image = Source {
-                    mirror: Some(index),
-                    position: mirror.image(original.position),
-                    world_from_luminaire: mirror.reflection() * original.world_from_luminaire,
-                    ..original.clone()
-                };
+                let image = sources[luminaire].image(mirror, Some(index));
                 sources.push(image);
             }
         }
@@ -117,6 +124,12 @@ impl<'s> Emitters<'s> {
     /// Probability with which a random estimate should consider a source; see [`Mirror::chance`].
     pub fn chance(&self, source: &Source) -> f64 {
         source.mirror.map_or(1.0, |mirror| self.mirrors[mirror].chance)
+    }
+
+    /// Intensity in cd with which a source shines along the unit `direction` from its place.
+    pub fn intensity_cd(&self, source: &Source, direction: DVec3) -> f64 {
+        let leaving = source.world_from_luminaire.transpose() * direction;
+        self.luminaire(source).kind.distribution.intensity_along(leaving) * source.dim
     }
 
     /// Light from the point of the opening at `u` (in the unit square) to `point`.

@@ -3,6 +3,7 @@
 
 mod answer;
 mod flux;
+mod highlights;
 mod lobe;
 mod look;
 mod path;
@@ -48,6 +49,8 @@ pub struct Effort {
     pub links: u32,
     /// Gather rays per receiver and block.
     pub gather: u32,
+    /// Rays drawn about highlights, per receiver and block where a glossy plane reflects luminaires.
+    pub highlights: u32,
     /// Residual walks per receiver and block, ≤ `gather`.
     pub walks: u32,
     /// Rays by which a residual vertex looks at the field around it; the walk goes on along the first.
@@ -68,6 +71,7 @@ impl Default for Effort {
             patch_m2: None,
             links: 32,
             gather: 16,
+            highlights: 4,
             walks: 2,
             looks: 4,
             shadow_rays: 8.0,
@@ -86,6 +90,8 @@ pub struct Prepared<'s> {
     effort: Effort,
     method: Method,
     seed: u64,
+    /// Where glossy planes reflect luminaires.
+    highlights: highlights::Highlights,
     /// The stored field; empty for the path tracer.
     field: Option<LuminanceField>,
     /// Per row and source: unshadowed illuminance, lx.
@@ -156,8 +162,9 @@ pub fn prepare<'s>(
     seed: u64,
 ) -> Prepared<'s> {
     let emitters = Emitters::new(scene);
+    let highlights = highlights::Highlights::new(&emitters);
     let field = match method {
-        Method::Links => Some(prepare::field(&emitters, &effort, seed)),
+        Method::Links => Some(prepare::field(&emitters, &highlights, &effort, seed)),
         Method::Path => None,
     };
     let unshadowed = match method {
@@ -166,6 +173,7 @@ pub fn prepare<'s>(
     };
     Prepared {
         scene,
+        highlights,
         emitters,
         demand,
         effort,

@@ -19,7 +19,7 @@ use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, unshadowed};
-pub use images::Mirror;
+pub use images::{Mirror, planes};
 pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
 
@@ -81,6 +81,17 @@ impl Source {
     fn place(&self, point: DVec3) -> DVec3 {
         self.world_from_luminaire.transpose() * (point - self.position)
     }
+
+    /// Its image in a plane.
+    #[must_use]
+    pub fn image(&self, plane: &Mirror, mirror: Option<usize>) -> Self {
+        Self {
+            mirror,
+            position: plane.image(self.position),
+            world_from_luminaire: plane.reflection() * self.world_from_luminaire,
+            ..self.clone()
+        }
+    }
 }
 
 impl<'s> Emitters<'s> {
@@ -109,13 +120,7 @@ impl<'s> Emitters<'s> {
             .collect();
         for (index, mirror) in mirrors.iter().enumerate() {
             for luminaire in 0..scene.luminaires.len() {
-                let original = &sources[luminaire];
-                let image = Source {
-                    mirror: Some(index),
-                    position: mirror.image(original.position),
-                    world_from_luminaire: mirror.reflection() * original.world_from_luminaire,
-                    ..original.clone()
-                };
+                let image = sources[luminaire].image(mirror, Some(index));
                 sources.push(image);
             }
         }
@@ -139,6 +144,12 @@ impl<'s> Emitters<'s> {
     /// Probability with which a random estimate should consider a source; see [`Mirror::chance`].
     pub fn chance(&self, source: &Source) -> f64 {
         source.mirror.map_or(1.0, |mirror| self.mirrors[mirror].chance)
+    }
+
+    /// Intensity in cd with which a source shines along the unit `direction` from its place.
+    pub fn intensity_cd(&self, source: &Source, direction: DVec3) -> f64 {
+        let leaving = source.world_from_luminaire.transpose() * direction;
+        self.luminaire(source).kind.distribution.intensity_along(leaving) * source.dim
     }
 
     /// Light from the point of the opening at `u` (in the unit square) to `point`.

@@ -107,6 +107,32 @@ fn a_node_of_two_materials_has_two_surfaces() {
     assert_eq!(imported.materials[0].reflectance, None, "a default white is no datum");
 }
 
+/// Catches: a lobe from glTF's defaults, from a textured roughness, or from a factor beyond 1.
+#[test]
+fn only_a_written_roughness_makes_a_material_glossy() {
+    let gloss = |pbr: &str| {
+        let text = format!(
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0,"name":"N"}}],
+            "materials":[{{"name":"M","pbrMetallicRoughness":{{"baseColorFactor":[0.5,0.5,0.5,1]{pbr}}}}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"mode":6,"material":0}}]}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":4}}],
+            "bufferViews":[{{"buffer":0,"byteLength":48}}],"buffers":[{{"byteLength":48,"uri":"a.bin"}}],
+            "textures":[{{}}]}}"#
+        );
+        let imported = import(text.as_bytes(), &mut |_| Ok(Bytes::new().0))?;
+        Ok::<_, GltfError>((imported.materials[0].gloss, imported.biases))
+    };
+    assert_eq!(gloss("").unwrap().0, None);
+    assert_eq!(gloss(r#","metallicFactor":0"#).unwrap().0, None);
+    assert_eq!(gloss(r#","metallicFactor":0.2,"roughnessFactor":0.3"#).unwrap().0, Some([0.2, 0.3]));
+    let (bare, biases) = gloss(r#","roughnessFactor":0.3"#).unwrap();
+    assert_eq!(bare, Some([1.0, 0.3]), "glTF's default metallic factor is 1");
+    assert!(biases.iter().any(|bias| bias.contains("metallic-roughness")), "{biases:?}");
+    let textured = r#","roughnessFactor":0.3,"metallicRoughnessTexture":{"index":0}"#;
+    assert_eq!(gloss(textured).unwrap().0, None);
+    assert!(matches!(gloss(r#","roughnessFactor":1.5"#), Err(GltfError::Gloss { .. })));
+}
+
 #[test]
 fn sparse_values_replace_those_of_the_base() {
     // Index 2 (16 bit, padded) becomes (2, 2, 0): a kite of area 2 instead of the square.

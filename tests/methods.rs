@@ -66,11 +66,11 @@ fn differences(links: &Scene, path: &Scene, demand: &Demand, seed: u64) -> (Vec<
         links,
         demand,
         Method::Links,
-        Effort { gather: 16, walks: 8, ..Effort::default() },
+        Effort { gather: 16, walks: 4, ..Effort::default() },
         seed,
         blocks,
     );
-    let b = sheets(path, demand, Method::Path, Effort { paths: 128, ..Effort::default() }, seed, blocks);
+    let b = sheets(path, demand, Method::Path, Effort { paths: 40, ..Effort::default() }, seed, blocks);
     let channels = links.channels.len();
     let mut t: Vec<f64> = Vec::new();
     for index in 0..demand.rows() {

@@ -3,6 +3,7 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::material::Bsdf;
 use crate::scene::Scene;
 
 /// At most this many planes get images, and only those with this share of the scene's area; light
@@ -83,11 +84,21 @@ impl Mirror {
 
 /// Specular planes by size, the largest [`MOST_PLANES`], and for each triangle whether it is in one.
 pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
+    let found = planes(scene, MOST_PLANES, |bsdf| bsdf.specular(1.0).is_some());
+    let mut imaged = vec![false; scene.mesh.triangles.len()];
+    for triangle in found.iter().flat_map(|mirror| &mirror.triangles) {
+        imaged[*triangle as usize] = true;
+    }
+    (found, imaged)
+}
+
+/// At most `most` planes of surfaces that `belongs` picks, the largest first.
+pub fn planes(scene: &Scene, most: usize, belongs: impl Fn(&Bsdf) -> bool) -> Vec<Mirror> {
     let mesh = &scene.mesh;
     let size_m = mesh.bounds().map_or(1.0, |(lo, hi)| (hi - lo).length());
     let mut found: Vec<(Mirror, f64)> = Vec::new();
     for triangle in 0..mesh.triangles.len() as u32 {
-        if scene.bsdf(triangle).specular(1.0).is_none() {
+        if !belongs(scene.bsdf(triangle)) {
             continue;
         }
         let (normal, area_m2) = mesh.normal_and_area(triangle as usize);
@@ -123,11 +134,7 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
     let has_points = scene.luminaires.iter().any(|luminaire| luminaire.kind.opening.is_point());
     let total_m2: f64 = mesh.surface_areas_m2().iter().sum();
     found.retain(|(_, area_m2)| has_points || *area_m2 >= LEAST_SHARE * total_m2);
-    found.truncate(MOST_PLANES);
-    let mut imaged = vec![false; mesh.triangles.len()];
-    for triangle in found.iter().flat_map(|(mirror, _)| &mirror.triangles) {
-        imaged[*triangle as usize] = true;
-    }
+    found.truncate(most);
     for (mirror, _) in &mut found {
         let triangles = mirror.triangles.clone();
         let corners = || triangles.iter().flat_map(|&t| mesh.corners(t as usize));
@@ -137,5 +144,5 @@ pub(super) fn mirrors(scene: &Scene) -> (Vec<Mirror>, Vec<bool>) {
         mirror.centre = corners().sum::<DVec3>() / (3.0 * mirror.triangles.len() as f64);
         mirror.radius_m = corners().map(|p| p.distance(mirror.centre)).fold(0.0, f64::max) * (1.0 + 1e-9);
     }
-    (found.into_iter().map(|(mirror, _)| mirror).collect(), imaged)
+    found.into_iter().map(|(mirror, _)| mirror).collect()
 }

@@ -15,7 +15,7 @@ use super::lobe::{Albedo, Lobe};
 pub struct Ggx {
     f0: f64,
     pub(super) f90: f64,
-    alpha: f64,
+    pub(super) alpha: f64,
     albedo: Albedo,
 }
 

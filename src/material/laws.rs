@@ -41,7 +41,7 @@ fn direction(cos: f64, azimuth: f64) -> DVec3 {
 
 /// ∫ f |cos| and ∫ p over the sphere of wi, by midpoints.
 fn integrals(bsdf: &Bsdf, wo: DVec3) -> (f64, f64) {
-    let (rings, sectors) = if bsdf.lobe().is_some() { (1500, 512) } else { (200, 16) };
+    let (rings, sectors) = if bsdf.lobe().is_some() { (3000, 256) } else { (200, 16) };
     let (mut energy, mut density) = (0.0, 0.0);
     for i in 0..2 * rings {
         let cos = (f64::from(i) + 0.5) / f64::from(rings) - 1.0;

@@ -68,6 +68,17 @@ impl Lobe {
         }
     }
 
+    /// Exponent n of the Phong lobe cosⁿα ≈ exp(−nα²/2) that is about as wide near normal incidence.
+    pub fn sharpness(&self) -> f64 {
+        match self {
+            Self::Phong(lobe) => lobe.exponent,
+            Self::PhongPaper(lobe) => lobe.exponent,
+            // Half vectors turn by half the angle: exp(−tan²(α/2)/a²).
+            Self::Ward(lobe) => 0.5 / (lobe.alpha * lobe.alpha),
+            Self::Ggx(lobe) => 0.5 / (lobe.alpha * lobe.alpha),
+        }
+    }
+
     /// What the albedo never exceeds.
     pub fn bound(&self) -> f64 {
         match self {

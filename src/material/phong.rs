@@ -15,7 +15,7 @@ use crate::sphere;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phong {
     pub(super) specular: f64,
-    exponent: f64,
+    pub(super) exponent: f64,
     /// ρ_s c_n: the largest weight.
     strength: f64,
     albedo: Albedo,

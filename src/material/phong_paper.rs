@@ -11,7 +11,7 @@ use super::phong::{density, draw};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhongPaper {
     pub(super) specular: f64,
-    exponent: f64,
+    pub(super) exponent: f64,
     albedo: Albedo,
 }
 

@@ -13,7 +13,7 @@ use super::lobe::Albedo;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ward {
     pub(super) specular: f64,
-    alpha: f64,
+    pub(super) alpha: f64,
     albedo: Albedo,
 }
 

@@ -10,8 +10,11 @@
 //! from one diffuse place to the next: a look along a ray returns all places it leads to, each of
 //! weight 1 on average times what reflects it there, and the luminaires met or reflected on the way.
 
+use std::f64::consts::FRAC_1_PI;
+
 use glam::DVec3;
 
+use super::highlights::{self, Bundle};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
 use super::{PARTS, Part, Prepared, Sheet, lifted};
 use crate::query::{Ray, Receiver};
@@ -38,6 +41,8 @@ struct Desk {
     pending: Vec<Landing>,
     /// Where the walk goes on from its current place.
     onward: Vec<Landing>,
+    /// Highlights about the receiver or the current place.
+    bundles: Vec<Bundle>,
 }
 
 /// Block `stream` of a `Links` solution.
@@ -52,6 +57,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
         sight: Sight::new(channels),
         pending: Vec::new(),
         onward: Vec::new(),
+        bundles: Vec::new(),
     };
     for (index, receiver) in demand.receivers.iter().enumerate() {
         let row = prepared.first_rows[index];
@@ -91,31 +97,46 @@ fn answer_receiver(
     let rounds = |count: u32| count.next_multiple_of(kernels.len() as u32);
     let gather = rounds(effort.gather);
     let walks = rounds(effort.walks).min(gather);
+    let mean_pdf = |direction: DVec3| {
+        kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64
+    };
     let sequence = Stratified::new(rng);
-    for sample in 0..gather {
-        let turn = sample as usize % kernels.len();
-        let direction = kernels[turn].sample(sequence.point(sample, rng));
-        let density: f64 =
-            kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64;
-        if !(density > 0.0) {
+    let mut bundles = std::mem::take(&mut desk.bundles);
+    let response = |direction| kernels.iter().map(|kernel| kernel.response(direction)).sum();
+    prepared.highlights.about(&prepared.emitters, origin, response, &mut bundles);
+    let guided = if bundles.is_empty() { 0 } else { effort.highlights };
+    let aims = if guided > 0 { Stratified::new(rng) } else { sequence };
+    for sample in 0..gather + guided {
+        let direction = if sample < gather {
+            kernels[sample as usize % kernels.len()].sample(sequence.point(sample, rng))
+        } else {
+            highlights::draw(&bundles, aims.point(sample - gather, rng))
+        };
+        let density = mean_pdf(direction);
+        // Σ of the densities of all rays: response / mixture is the weight of a ray however it was drawn.
+        let mixture = f64::from(gather) * density
+            + if guided > 0 { f64::from(guided) * highlights::density(&bundles, direction) } else { 0.0 };
+        if !(mixture > 0.0) {
             continue;
         }
         see(prepared, origin, direction, ANALOG, rng, desk);
-        let walked = sample < walks && !desk.sight.landings.is_empty();
+        // Walks are of the first rays alone, which follow the responses.
+        let walked = sample < walks && density > 0.0 && !desk.sight.landings.is_empty();
         if walked {
             walk(prepared, rng, desk);
         }
         for (k, kernel) in kernels.iter().enumerate() {
-            let weight = kernel.response(direction) / density;
+            let response = kernel.response(direction);
             for channel in 0..channels {
-                let mut value = weight * desk.seen[channel] / f64::from(gather);
+                let mut value = response / mixture * desk.seen[channel];
                 if walked {
-                    value += weight * desk.residual[channel] / f64::from(walks);
+                    value += response / (density * f64::from(walks)) * desk.residual[channel];
                 }
                 out[(k * channels + channel) * PARTS + Part::Indirect as usize] += value;
             }
         }
     }
+    desk.bundles = bundles;
 }
 
 /// Direct light = unshadowed light (exact) − what is kept off (sampled): no noise where nothing shades.
@@ -282,13 +303,31 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
     for (residual, direct) in desk.residual.iter_mut().zip(&desk.sight.met) {
         *residual += here.weight * direct;
     }
+    let mut bundles = std::mem::take(&mut desk.bundles);
+    bundles.clear();
+    if !(transmittance > 0.0) {
+        let response = |direction| here.normal.dot(direction);
+        prepared.highlights.about(emitters, here.origin(scene, true), response, &mut bundles);
+    }
     let looks = effort.looks.max(1);
-    let share = here.weight * albedo / f64::from(looks);
+    let guided = u32::from(!bundles.is_empty());
     desk.onward.clear();
-    for number in 0..looks {
-        let same_side = rng.uniform() * albedo < reflectance;
-        let facing = if same_side { here.normal } else { -here.normal };
-        let direction = sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms());
+    for number in 0..looks + guided {
+        let mut share = here.weight * albedo / f64::from(looks);
+        let (same_side, direction) = if number < looks {
+            let same_side = rng.uniform() * albedo < reflectance;
+            let facing = if same_side { here.normal } else { -here.normal };
+            (same_side, sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms()))
+        } else {
+            (true, highlights::draw(&bundles, rng.uniforms()))
+        };
+        if guided > 0 {
+            let cosine = f64::from(looks) * here.normal.dot(direction).max(0.0) * FRAC_1_PI;
+            share *= cosine / (cosine + highlights::density(&bundles, direction));
+            if !(share > 0.0) {
+                continue;
+            }
+        }
         look(emitters, here.origin(scene, same_side), direction, ANALOG, rng, &mut desk.sight);
         for (residual, met) in desk.residual.iter_mut().zip(&desk.sight.met) {
             *residual += share * met;
@@ -299,10 +338,12 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
                 *residual += share * next.weight * stored;
             }
         }
+        // The walk goes on along the first look, which follows the cosine.
         if number == 0 {
             desk.onward.extend_from_slice(&desk.sight.landings);
         }
     }
+    desk.bundles = bundles;
     if !desk.onward.is_empty() && rng.uniform() < albedo {
         let weighted = |next: &Landing| Landing { weight: here.weight * next.weight, ..*next };
         desk.pending.extend(desk.onward.iter().map(weighted));

@@ -6,6 +6,7 @@ mod chains;
 mod double;
 pub mod far_field;
 mod flux;
+mod highlights;
 mod lobe;
 mod local;
 mod look;
@@ -58,6 +59,8 @@ pub struct Effort {
     pub links: u32,
     /// Gather rays per receiver and block.
     pub gather: u32,
+    /// Rays drawn about highlights, per receiver and block where a glossy plane reflects luminaires.
+    pub highlights: u32,
     /// Residual walks per receiver and block, ≤ `gather`.
     pub walks: u32,
     /// Rays by which a residual vertex looks at the field around it; the walk goes on along the first.
@@ -80,6 +83,7 @@ impl Default for Effort {
             patch_m2: None,
             links: 32,
             gather: 16,
+            highlights: 4,
             walks: 2,
             looks: 4,
             shadow_rays: 8.0,
@@ -99,6 +103,8 @@ pub struct Prepared<'s> {
     effort: Effort,
     method: Method,
     seed: u64,
+    /// Where glossy planes reflect luminaires.
+    highlights: highlights::Highlights,
     /// The stored field; empty for the path tracer.
     field: Option<LuminanceField>,
     /// What chains start from; only for local estimation.
@@ -173,8 +179,9 @@ pub fn prepare<'s>(
     seed: u64,
 ) -> Prepared<'s> {
     let emitters = Emitters::new(scene);
+    let highlights = highlights::Highlights::new(&emitters);
     let field = match method {
-        Method::Links => Some(prepare::field(&emitters, &effort, seed)),
+        Method::Links => Some(prepare::field(&emitters, &highlights, &effort, seed)),
         Method::Path | Method::Local | Method::Double => None,
     };
     let unshadowed = match method {
@@ -187,6 +194,7 @@ pub fn prepare<'s>(
     };
     Prepared {
         scene,
+        highlights,
         emitters,
         demand,
         effort,

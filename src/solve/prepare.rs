@@ -2,9 +2,12 @@
 //! *links* (for each patch side, where cosine-distributed rays end), and Gauss–Seidel sweeps on it.
 //! Links do not depend on luminaires; every channel uses the same ones.
 
+use std::f64::consts::FRAC_1_PI;
+
 use rayon::prelude::*;
 
 use super::Effort;
+use super::highlights::{self, Highlights};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
 use crate::emitters::Emitters;
 use crate::field::{LuminanceField, Patches};
@@ -15,6 +18,8 @@ use crate::sphere;
 const PATCHES: f64 = 1500.0;
 /// Samples of direct light per patch side.
 const DIRECT_SAMPLES: u32 = 4;
+/// One link in this many is doubled by a ray about the highlights that may be seen from its place.
+const AIMED: u32 = 4;
 /// Sweeps end when the stored flux changes by less than this share …
 const SETTLED: f64 = 1e-3;
 /// … or after this many; the rest is left to the residual.
@@ -32,7 +37,12 @@ struct Collected {
 }
 
 /// Builds the field from stream 0 of `seed`.
-pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> LuminanceField {
+pub(super) fn field(
+    emitters: &Emitters,
+    highlights: &Highlights,
+    effort: &Effort,
+    seed: u64,
+) -> LuminanceField {
     let scene = emitters.scene;
     let diffuse = |triangle: usize| scene.bsdf(triangle as u32).specular(1.0).is_none();
     let area_m2: f64 = (0..scene.mesh.triangles.len())
@@ -44,7 +54,9 @@ pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> Luminanc
     let channels = scene.channels.len();
     let collected: Vec<Collected> = (0..patches.sides())
         .into_par_iter()
-        .map(|side| collect(emitters, &patches, effort, side, &mut Rng::new(seed, 0, side as u64)))
+        .map(|side| {
+            collect(emitters, highlights, &patches, effort, side, &mut Rng::new(seed, 0, side as u64))
+        })
         .collect();
     let mut field = LuminanceField::dark(patches, channels);
     for (side, entry) in collected.iter().enumerate() {
@@ -54,7 +66,14 @@ pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> Luminanc
     field
 }
 
-fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize, rng: &mut Rng) -> Collected {
+fn collect(
+    emitters: &Emitters,
+    highlights: &Highlights,
+    patches: &Patches,
+    effort: &Effort,
+    side: usize,
+    rng: &mut Rng,
+) -> Collected {
     let scene = emitters.scene;
     let channels = scene.channels.len();
     let triangle = patches.triangle(side);
@@ -81,6 +100,7 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
         *value /= f64::from(DIRECT_SAMPLES);
     }
     let (places, directions) = (Stratified::new(rng), Stratified::new(rng));
+    let mut bundles = Vec::new();
     let mut links = Vec::with_capacity(effort.links as usize);
     let mut met = vec![0.0; channels];
     for link in 0..effort.links {
@@ -90,9 +110,25 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
         let same_side = choice * total < reflectance;
         let facing = if same_side { at.normal } else { -at.normal };
         let direction = sphere::frame(facing) * sphere::cosine_hemisphere([u, v]);
-        look(emitters, at.origin(scene, same_side), direction, 1.0, rng, &mut sight);
-        for (sum, value) in met.iter_mut().zip(&sight.met) {
-            *sum += value;
+        // What lobes reflect of luminaires is looked for about their highlights too.
+        let origin = at.origin(scene, same_side);
+        highlights.about(emitters, origin, |direction| facing.dot(direction), &mut bundles);
+        let aimed = if link % AIMED == 0 && !bundles.is_empty() {
+            Some(highlights::draw(&bundles, rng.uniforms()))
+        } else {
+            None
+        };
+        for (number, direction) in aimed.into_iter().chain([direction]).enumerate() {
+            let cosine = facing.dot(direction).max(0.0) * FRAC_1_PI;
+            let by_aim = highlights::density(&bundles, direction) / f64::from(AIMED);
+            let share = if bundles.is_empty() { 1.0 } else { cosine / (cosine + by_aim) };
+            if number == 0 && aimed.is_some() && !(share > 0.0) {
+                continue;
+            }
+            look(emitters, origin, direction, 1.0, rng, &mut sight);
+            for (sum, value) in met.iter_mut().zip(&sight.met) {
+                *sum += share * value;
+            }
         }
         // A link through a glossy surface ends on its diffuse part and once more where its lobe leads.
         for landing in &sight.landings {

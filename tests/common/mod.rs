@@ -182,7 +182,7 @@ pub fn glossy_room([diffuse, lobe]: [f64; 2], downlights: bool) -> Scene {
     materials
         .push(Material { name: "cabinet".into(), bsdf: Bsdf::metallic_roughness(0.6 * diffuse, 0.5, 0.4) });
     materials.push(glossy("paper", rho(0.4), Lobe::PhongPaper(PhongPaper::new(0.3 * lobe, 20.0))));
-    materials.push(glossy("sharp", rho(0.1), Lobe::Phong(Phong::new(0.4 * lobe, 3000.0))));
+    materials.push(glossy("sharp", rho(0.1), Lobe::Phong(Phong::new(0.3 * lobe, 300.0))));
     for surface in &mut mesh.surfaces {
         match surface.name.as_str() {
             "Wall_N" => surface.material = 8,
@@ -203,7 +203,7 @@ pub fn glossy_room([diffuse, lobe]: [f64; 2], downlights: bool) -> Scene {
             .into_iter()
             .map(|[x, y]| {
                 let distribution = IntensityDistribution::lambert(Lumens(1200.0));
-                lamp(distribution, disc(0.12), DVec3::new(x, y, 2.78))
+                lamp(distribution, disc(0.2), DVec3::new(x, y, 2.78))
             })
             .collect();
         let mut bulb = point_lamp(800.0, DVec3::new(5.2, 0.8, 2.2));

@@ -41,6 +41,19 @@ struct WrittenPbr {
     base_color: Option<Vec<f64>>,
     #[serde(rename = "metallicFactor")]
     metallic: Option<f64>,
+    #[serde(rename = "roughnessFactor")]
+    roughness: Option<f64>,
+    #[serde(rename = "metallicRoughnessTexture")]
+    texture: Option<serde::de::IgnoredAny>,
+}
+
+impl WrittenPbr {
+    /// Metallic and roughness factors where the second is written and no texture changes them.
+    fn gloss(&self) -> Option<[f64; 2]> {
+        let roughness = self.roughness.filter(|_| self.texture.is_none())?;
+        // glTF: absent, the metallic factor is 1.
+        Some([self.metallic.unwrap_or(1.0), roughness])
+    }
 }
 
 impl Written {
@@ -87,7 +100,11 @@ pub(super) fn materials(root: &json::Root, written: &Written) -> Result<Vec<Impo
             let name = name_of(material, index);
             let colour = written.pbr(index).and_then(|pbr| pbr.base_color.as_ref());
             let reflectance = colour.map(|colour| luminance(&name, colour)).transpose()?;
-            Ok(ImportedMaterial { name, reflectance })
+            let gloss = written.pbr(index).and_then(WrittenPbr::gloss);
+            if let Some(value) = gloss.filter(|gloss| gloss.iter().any(|x| !(0.0..=1.0).contains(x))) {
+                return Err(GltfError::Gloss { name, value });
+            }
+            Ok(ImportedMaterial { name, reflectance, gloss })
         })
         .collect()
 }
@@ -129,8 +146,15 @@ pub(super) fn biases(root: &json::Root, written: &Written, unused: &[&str]) -> V
             || m.emissive_texture.is_some()
     });
     // 1 is glTF's default and says nothing; a value that was written does.
+    listing(
+        "metallic-roughness of the file used, its diffuse part taken as constant with angle",
+        &|_, index| {
+            let pbr = written.pbr(index);
+            pbr.is_some_and(|pbr| pbr.base_color.is_some() && pbr.gloss().is_some())
+        },
+    );
     listing("metal treated as diffuse", &|_, index| {
-        let metallic = written.pbr(index).and_then(|pbr| pbr.metallic);
+        let metallic = written.pbr(index).filter(|pbr| pbr.gloss().is_none()).and_then(|pbr| pbr.metallic);
         metallic.is_some_and(|metallic| metallic > 0.5)
     });
     listing("emission ignored (use `emit` in [materials])", &|m, _| {

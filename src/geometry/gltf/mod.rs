@@ -40,6 +40,9 @@ pub struct ImportedMaterial {
     pub name: String,
     /// Rec. 709 Y of a baseColorFactor that is written in the file; absent otherwise.
     pub reflectance: Option<f64>,
+    /// metallicFactor (glTF's default where it is not written) and roughnessFactor, if the roughness
+    /// is written and no texture changes it.
+    pub gloss: Option<[f64; 2]>,
 }
 
 /// A node of the scene.
@@ -138,6 +141,14 @@ pub enum GltfError {
         name: String,
         /// As written.
         value: Vec<f64>,
+    },
+    /// Factors that are no factors.
+    #[error("material \"{name}\": metallicFactor and roughnessFactor {value:?} are outside 0 … 1")]
+    Gloss {
+        /// The material.
+        name: String,
+        /// As written.
+        value: [f64; 2],
     },
     /// Absurd size.
     #[error("more than 100 million triangles or vertices")]

@@ -231,7 +231,11 @@ impl<'a> Walk<'a> {
     ) -> Result<usize, GltfError> {
         let Some(index) = primitive.material else {
             return Ok(*self.default_material.get_or_insert_with(|| {
-                out.materials.push(ImportedMaterial { name: "default".to_owned(), reflectance: None });
+                out.materials.push(ImportedMaterial {
+                    name: "default".to_owned(),
+                    reflectance: None,
+                    gloss: None,
+                });
                 out.materials.len() - 1
             }));
         };

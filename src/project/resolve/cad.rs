@@ -9,6 +9,7 @@ use super::rooms::add_room;
 use super::shell::Shell;
 use crate::geometry::gltf::{self, Imported};
 use crate::geometry::mesh::Mesh;
+use crate::material::{Bsdf, Material};
 use crate::project::context::{Context, LARGE_FILE};
 use crate::project::diagnostics::suggestion;
 use crate::project::schema::{At, RoomSection};
@@ -48,7 +49,13 @@ pub fn draft(
         let used = mesh.surfaces.iter().any(|surface| surface.material == index);
         let resolved = match (palette.find(&material.name), material.reflectance) {
             (Lookup::Found(entry), _) => Some(entry),
-            (Lookup::Absent, Some(reflectance)) => Some(lambert(&material.name, reflectance)),
+            (Lookup::Absent, Some(luminance)) => Some(match material.gloss {
+                Some([metallic, roughness]) => Material {
+                    name: material.name.clone(),
+                    bsdf: Bsdf::metallic_roughness(luminance, metallic, roughness),
+                },
+                None => lambert(&material.name, luminance),
+            }),
             (Lookup::Absent, None) if used => {
                 let message =
                     format!("material \"{}\" of {} has no photometric data", material.name, path.get_ref());

@@ -19,6 +19,9 @@ pub struct Glare {
     /// Of a project: let it read files outside its folder
     #[arg(long)]
     pub allow_outside: bool,
+    /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
+    #[arg(long, value_name = "DIR", requires = "project")]
+    pub out: Option<PathBuf>,
     /// Luminance images: Radiance HDR or OpenEXR
     #[arg(long, value_name = "FILE", required_unless_present = "project", num_args = 1..)]
     pub image: Vec<PathBuf>,

@@ -9,10 +9,11 @@ use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
 use gershun::image::{LuminanceImage, ViewOptions, read};
+use gershun::observe::map::{Mapped, maps};
 use gershun::observe::{CONVENTIONS, observe};
 use gershun::project::{LoadOptions, load, read_image};
 use gershun::report::glare as report;
-use gershun::report::write_file;
+use gershun::report::{make_folder, write_file};
 use gershun::units::Nits;
 use rayon::prelude::*;
 
@@ -80,14 +81,22 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
     };
     let conventions = if glare.compare_methods { &CONVENTIONS[..] } else { &CONVENTIONS[..1] };
     let observed = observe(&project, conventions, glare.blocks as usize);
-    if observed.is_empty() {
-        return complain(
-            "the project has no viewpoint\n  hint: add one with [[viewpoint]], eye and direction",
-        );
+    let maps = if glare.compare_methods { Vec::new() } else { maps(&project, glare.blocks as usize) };
+    if observed.is_empty() && maps.is_empty() {
+        let hint = "hint: add [[viewpoint]] with eye and direction";
+        return complain(&format!("the project has no viewpoint and no glare map\n  {hint}"));
+    }
+    if let Some(out) = &glare.out
+        && let Err(error) = write_maps(out, &maps)
+    {
+        return complain(&error);
     }
     let text = match glare.format {
         GlareFormat::Human if glare.compare_methods => Ok(report::compared_text(&observed)),
-        GlareFormat::Human => Ok(report::observed_text(&observed)),
+        GlareFormat::Human => {
+            let maps: Vec<String> = maps.iter().map(report::map_text).collect();
+            Ok(report::observed_text(&observed) + &maps.concat())
+        }
         GlareFormat::Json => report::observed_json(&observed),
         GlareFormat::Csv => report::observed_csv(&observed),
     };
@@ -95,6 +104,19 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
         Ok(text) => say(&text),
         Err(error) => complain(&error.to_string()),
     }
+}
+
+/// `glare_map_1.csv` and `.svg` for every map.
+fn write_maps(folder: &Path, maps: &[Mapped]) -> Result<(), String> {
+    make_folder(folder).map_err(|error| error.to_string())?;
+    for (number, map) in maps.iter().enumerate() {
+        let table = report::map_csv(map).map_err(|error| error.to_string())?;
+        for (extension, text) in [("csv", table), ("svg", report::map_svg(map))] {
+            let path = folder.join(format!("glare_map_{}.{extension}", number + 1));
+            write_file(&path, text.as_bytes()).map_err(|error| error.to_string())?;
+        }
+    }
+    Ok(())
 }
 
 /// The image of a file; `view`, if given, takes the place of what the file says.

@@ -20,7 +20,7 @@ use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, unshadowed};
 pub use images::{Mirror, planes};
-pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_from};
+pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_coarsely, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
 
 /// All luminaires of a scene and their images.

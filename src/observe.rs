@@ -1,6 +1,8 @@
 //! The observers of a project alone: their glare in every direction, by any convention. Areas and
 //! requirements are left out, so that only the light at the eyes is solved for.
 
+pub mod map;
+
 use glam::DVec3;
 use rayon::prelude::*;
 

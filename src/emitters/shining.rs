@@ -8,6 +8,8 @@ use crate::scene::{Channel, Scene};
 
 /// Solid angle above which a piece is cut into four, sr.
 const PIECE_SR: f64 = 0.004;
+/// The same for maps.
+const COARSE_SR: f64 = 0.02;
 /// Depth of cutting at which it ends: four million pieces of one triangle.
 const DEEPEST: u32 = 11;
 /// Rays by which the visibility of a piece is known; their spread is its error.
@@ -39,6 +41,8 @@ pub struct Piece {
     pub visible_sr: f64,
     /// The same, times the transmittance of panes before it, sr.
     pub passed_sr: f64,
+    /// ∫ d dω over it, transmittances included: its light on a plane is L times the part along the normal.
+    pub passed_vector: DVec3,
     /// Standard error of `passed_sr`, sr; 0 where all of it is visible.
     pub se_sr: f64,
 }
@@ -46,6 +50,11 @@ pub struct Piece {
 /// All luminous surfaces of which anything is visible from `eye`. Draws from `seed` only.
 pub fn shining_from(scene: &Scene, eye: DVec3, seed: u64) -> Vec<Shining> {
     shining_in_pieces(scene, eye, seed, PIECE_SR)
+}
+
+/// [`shining_from`] in coarse pieces, for maps of many eyes.
+pub(super) fn shining_coarsely(scene: &Scene, eye: DVec3, seed: u64) -> Vec<Shining> {
+    shining_in_pieces(scene, eye, seed, COARSE_SR)
 }
 
 /// [`shining_from`] with pieces of at most `piece_sr`.
@@ -129,6 +138,7 @@ fn cut(
             direction: towards / distance_m,
             visible_sr: solid_angle_sr * visible / n,
             passed_sr: solid_angle_sr * passed / n,
+            passed_vector: vector(corners.map(|corner| corner - eye), towards) * (passed / n),
             se_sr: solid_angle_sr * variance.sqrt(),
         });
     }
@@ -140,6 +150,20 @@ fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let triple = a.dot(b.cross(c)).abs();
     let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
     2.0 * triple.atan2(below)
+}
+
+/// ∫ d dω over a triangle seen from the origin, ½ Σ Γ_i (Lambert), pointing along `towards`.
+fn vector(corners: [DVec3; 3], towards: DVec3) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    for (index, &a) in corners.iter().enumerate() {
+        let b = corners[(index + 1) % 3];
+        let cross = a.cross(b);
+        let length = cross.length();
+        if length > 0.0 {
+            sum += cross * (0.5 * length.atan2(a.dot(b)) / length);
+        }
+    }
+    if sum.dot(towards) < 0.0 { -sum } else { sum }
 }
 
 #[cfg(test)]

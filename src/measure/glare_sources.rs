@@ -218,7 +218,7 @@ fn on_eye(surface: &Shining, luminance: f64, gaze: DVec3) -> [f64; 2] {
     let (mut light, mut variance) = (0.0, 0.0);
     for piece in &surface.pieces {
         let cos = piece.direction.dot(gaze).max(0.0);
-        light += luminance * piece.passed_sr * cos;
+        light += luminance * piece.passed_vector.dot(gaze).max(0.0);
         variance += (luminance * piece.se_sr * cos).powi(2);
     }
     [light, f64::sqrt(variance)]

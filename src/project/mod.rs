@@ -155,6 +155,8 @@ pub struct World {
     pub areas: Vec<AreaSpec>,
     /// Observers.
     pub viewpoints: Vec<Viewpoint>,
+    /// Maps of glare.
+    pub glare_maps: Vec<GlareMap>,
     /// Requirements of `[[require]]` that concern this world.
     pub requirements: Vec<CustomRequirement>,
 }
@@ -283,6 +285,27 @@ pub struct Viewpoint {
     /// Unit lines of sight: one, or a sweep about the vertical.
     pub directions: Vec<DVec3>,
     /// Keys of the indices asked for, as the table of indices has them; UGR is always computed.
+    pub indices: Vec<&'static str>,
+    /// Light scene; `None`: the first.
+    pub light_scene: Option<usize>,
+}
+
+/// A grid of eyes that look in several directions each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlareMap {
+    /// Name, unique in the project.
+    pub name: String,
+    /// Index of its room within the world.
+    pub room: usize,
+    /// Corner of the rectangle, m; its height is the eyes'.
+    pub origin: DVec3,
+    /// Edges of the rectangle, m.
+    pub edges: [DVec3; 2],
+    /// Wanted distance of the eyes, m.
+    pub step_m: f64,
+    /// Lines of sight, horizontal, equally spaced from +x on.
+    pub directions: u32,
+    /// Keys of the indices wanted beside UGR.
     pub indices: Vec<&'static str>,
     /// Light scene; `None`: the first.
     pub light_scene: Option<usize>,

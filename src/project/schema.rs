@@ -271,16 +271,16 @@ pub struct ListsSection {
     pub viewpoints: Option<At<String>>,
 }
 
-/// Read strictly; pictures and maps are later work.
-#[expect(dead_code, reason = "checked for spelling only")]
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GlareMapSection {
-    pub rect: RectSection,
-    pub step: f64,
-    pub directions: Option<u32>,
+    pub name: Option<At<String>>,
+    pub rect: At<RectSection>,
+    pub step: At<f64>,
+    pub directions: Option<At<u32>>,
     #[serde(default)]
-    pub indices: Vec<String>,
+    pub indices: Vec<At<String>>,
+    pub light_scene: Option<At<String>>,
 }
 
 /// Read strictly; pictures and maps are later work.

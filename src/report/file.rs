@@ -25,6 +25,14 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     })
 }
 
+/// Makes a folder and those above it; one that is there is left as it is.
+///
+/// # Errors
+/// Where it cannot be made.
+pub fn make_folder(path: &Path) -> Result<(), ReportError> {
+    fs::create_dir_all(path).map_err(|source| ReportError::Io { path: path.to_owned(), source })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

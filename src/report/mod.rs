@@ -32,7 +32,7 @@ mod xml;
 
 use std::path::{Path, PathBuf};
 
-pub use file::write_file;
+pub use file::{make_folder, write_file};
 pub use junit::junit;
 pub use sarif::sarif;
 pub use sentence::overall;

@@ -9,7 +9,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::polygon;
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
-use crate::project::{AreaSpec, CustomRequirement, Room, Viewpoint};
+use crate::project::{AreaSpec, CustomRequirement, GlareMap, Room, Viewpoint};
 
 /// What stands on a room's boundary still belongs to it, m.
 const TOLERANCE_M: f64 = 0.01;
@@ -34,6 +34,7 @@ pub struct Draft {
     pub luminaires: Vec<Luminaire>,
     pub areas: Vec<AreaSpec>,
     pub viewpoints: Vec<Viewpoint>,
+    pub glare_maps: Vec<GlareMap>,
     pub requirements: Vec<CustomRequirement>,
 }
 
@@ -71,6 +72,7 @@ impl Draft {
             luminaires: Vec::new(),
             areas: Vec::new(),
             viewpoints: Vec::new(),
+            glare_maps: Vec::new(),
             requirements: Vec::new(),
         }
     }

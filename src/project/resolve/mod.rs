@@ -7,6 +7,7 @@ mod bodies;
 mod cad;
 mod draft;
 mod furniture;
+mod glare_maps;
 mod lights;
 mod lists;
 mod luminaires;
@@ -50,6 +51,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     let light_scenes = settings::light_scenes(file, &drafts, context);
     areas::add(file, &mut drafts, &light_scenes, context);
     viewpoints::add(file, &mut drafts, &light_scenes, context);
+    glare_maps::add(file, &mut drafts, &light_scenes, context);
     settings::requirements(file, &mut drafts, &light_scenes, context);
     let declared = settings::declared(file, &drafts, context);
     let accuracy = settings::accuracy(file, context);
@@ -57,7 +59,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
         context.note("cameras are not rendered by check");
     }
     if !file.glare_maps.is_empty() {
-        context.note("glare maps are not computed by check");
+        context.note("glare maps are computed by `gershun glare`, not by check");
     }
     if !context.diagnostics.is_empty() {
         return None;
@@ -90,6 +92,7 @@ fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World
                 rooms: draft.rooms,
                 areas: draft.areas,
                 viewpoints: draft.viewpoints,
+                glare_maps: draft.glare_maps,
                 requirements: draft.requirements,
             })
         }

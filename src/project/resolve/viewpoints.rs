@@ -101,7 +101,8 @@ fn insert(
     }
 }
 
-fn indices(names: &[At<String>], context: &mut Context) -> Vec<&'static str> {
+/// Keys of the indices named, in their order.
+pub fn indices(names: &[At<String>], context: &mut Context) -> Vec<&'static str> {
     let mut keys = Vec::new();
     for name in names {
         if let Some(index) = parse(name.get_ref()) {

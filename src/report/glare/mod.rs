@@ -4,6 +4,7 @@
 mod check;
 mod csv;
 mod json;
+mod map;
 mod observed;
 mod png;
 mod text;
@@ -11,6 +12,7 @@ mod text;
 pub use check::{check_png, check_svg};
 pub use csv::indices_csv;
 pub use json::images_json;
+pub use map::{map_csv, map_svg, map_text};
 pub use observed::{compared_text, observed_csv, observed_json, observed_text};
 pub use text::images_text;
 

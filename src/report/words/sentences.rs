@@ -19,6 +19,14 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "Для каждой стороны поверхности хранится одно число: все рассеивающие материалы диффузные, их яркость не зависит от направления.",
     ),
     (
+        "Every scattering surface stores one number a side, the luminance of its diffuse part, which has no direction. The highlights of {} glossy surfaces are not stored: their lobe is drawn at every look, luminaires in it by their openings as well.",
+        "Для каждой стороны рассеивающей поверхности хранится одно число – яркость диффузной части, не зависящая от направления. Блики глянцевых поверхностей ({}) не хранятся: направленная составляющая разыгрывается при каждом взгляде, светильники в ней – также по точкам их отверстий.",
+    ),
+    (
+        "Area \"{}\" lies at {} m, row {} names a plane at {} m.",
+        "Область «{}» лежит на высоте {} м, строка {} называет плоскость на высоте {} м.",
+    ),
+    (
         "{} specular surfaces store nothing: rays are followed through them, and luminaires are imaged in their planes.",
         "Для зеркальных и прозрачных поверхностей ({}) ничего не хранится: лучи прослеживаются через них, светильники отражаются в их плоскостях.",
     ),
@@ -65,6 +73,19 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "observers' UGR reads low where one is bright",
         "UGR наблюдателей занижен, если такая поверхность яркая",
     ),
+    (
+        "Highlights of luminaires on glossy surfaces are part of the background, not glare sources.",
+        "Блики светильников на глянцевых поверхностях отнесены к фону, а не к блёским источникам.",
+    ),
+    ("observers' UGR reads low where one dazzles", "UGR наблюдателей занижен там, где блик слепит"),
+    (
+        "The lobe of phong_paper loses light at grazing incidence that a real surface reflects; `phong` does not.",
+        "Модель phong_paper теряет при скользящем падении свет, который реальная поверхность отражает; `phong` – нет.",
+    ),
+    (
+        "{} % of the reflectance `specular` under uniform light",
+        "{} % коэффициента `specular` при равномерном освещении",
+    ),
     ("Luminous surfaces shine on both sides.", "Светящиеся поверхности излучают в обе стороны."),
     (
         "light of a side that faces out of the room counts as emitted and escaped in the flux balance",
@@ -82,7 +103,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("{}: {}; the margin is {} %", "{}: {}; запас {} %"),
     // Biases of loading.
     ("cameras are not rendered by check", "камеры командой check не рассчитываются"),
-    ("glare maps are not computed by check", "карты блёскости командой check не рассчитываются"),
+    (
+        "glare maps are computed by `gershun glare`, not by check",
+        "карты блёскости рассчитывает команда `gershun glare`, а не check",
+    ),
     (
         "{}: light sources of the glTF file are ignored; luminaires come from the project",
         "{}: источники света файла glTF не используются; светильники задаются в проекте",
@@ -102,9 +126,53 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "помещение «{}»: грани оболочки обращены наружу; обе стороны отражают одинаково",
     ),
     // Notes on glare.
+    ("{}; {}; L_b = E_ind/π", "{}; {}; L_b = E_отр/π"),
+    ("far field of the opening's centre", "дальняя зона, центр отверстия"),
+    ("visible part, mean luminance", "видимая часть, средняя яркость"),
+    ("visible part, subdivided", "видимая часть, по элементам"),
     (
-        "visible part, mean luminance; position index CIE 117 table (Iwata–Osterhaus below the line of sight); L_b = E_ind/π",
-        "видимая часть, средняя яркость; индекс позиции по таблице CIE 117 (ниже линии зрения – Ивата–Остерхаус); L_b = E_отр/π",
+        "position index CIE 117 table (Iwata–Osterhaus below the line of sight)",
+        "индекс позиции по таблице CIE 117 (ниже линии зрения – Ивата–Остерхаус)",
+    ),
+    (
+        "position index Levin (Iwata–Osterhaus below the line of sight)",
+        "индекс позиции по Левину (ниже линии зрения – Ивата–Остерхаус)",
+    ),
+    ("a source lies within 0.1° of the line of sight", "источник лежит в пределах 0,1° от линии зрения"),
+    (
+        "a point source has no luminance, for which this index asks",
+        "у точечного источника нет яркости, которая нужна этому показателю",
+    ),
+    ("the illuminance at the eye is not positive", "освещённость у глаза не положительна"),
+    ("there is no indirect light at the eye", "отражённого света у глаза нет"),
+    ("the mean luminance of the field of view is not known", "средняя яркость поля зрения неизвестна"),
+    ("the share of the ceiling that shines is not given", "доля светящейся части потолка не задана"),
+    (
+        "the ground's reflectance and mean horizontal illuminance are not given",
+        "коэффициент отражения и средняя горизонтальная освещённость земли не заданы",
+    ),
+    ("the road's luminance is not given", "яркость дорожного покрытия не задана"),
+    ("{} source(s) beyond 60° are left out", "источников далее 60°: {} – исключены"),
+    (
+        "{} source(s) under {} sr; DGI was made for windows",
+        "источников: {} – под телесным углом менее {} ср; DGI создан для окон",
+    ),
+    (
+        "{} source(s) nearer than 1.5° to the line of sight, where 10 E/θ² does not hold",
+        "источников: {} – ближе 1,5° к линии зрения, где 10 E/θ² не выполняется",
+    ),
+    (
+        "VCP was made for lensed ceiling luminaires of uniform luminance, not for windows or lamps",
+        "VCP создан для потолочных светильников равномерной яркости, а не для окон и ламп",
+    ),
+    (
+        "E_v {} lx is below the {} lx from which on DGP holds",
+        "E_v {} лк меньше {} лк, начиная с которых действует DGP",
+    ),
+    ("DGP was fitted between {} and {}", "DGP подобран в пределах от {} до {}"),
+    (
+        "UGP lies outside 0 to 1: beyond the offices it was fitted to",
+        "UGP вне пределов 0…1: за рамками офисов, для которых он подобран",
     ),
     (
         "a source lies below the line of sight: Iwata–Osterhaus position index",
@@ -162,6 +230,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "table method CIE 190, SHR {}, worst direction, initial flux",
         "табличный метод CIE 190, SHR {}, худшее направление, начальный поток",
     ),
+    (
+        "M = 10^((UGR + 4.8)/16), UGR by the table method, SHR {}",
+        "M = 10^((UGR + 4,8)/16), UGR табличным методом, SHR {}",
+    ),
     // Undefined values.
     ("E_max is 0", "E_max равна 0"),
     ("no light arrives on the area: 0/0", "на область не падает свет: 0/0"),
@@ -171,9 +243,30 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "у области нет одного значения: запросите mean, min, max, U0 или Ud",
     ),
     (
-        "not declared for every luminaire type ([declared] ra)",
-        "заявлено не для каждого типа светильников ([declared] ra)",
+        "not declared for every luminaire type ([declared] {})",
+        "заявлено не для каждого типа светильников ([declared] {})",
     ),
+    (
+        "gershun does not compute this quantity of a room",
+        "gershun не рассчитывает эту величину для помещения",
+    ),
+    ("gershun does not compute this quantity", "gershun не рассчитывает эту величину"),
+    ("the norm's file has no value of {} for row {}", "в файле нормы нет значения {} для строки {}"),
+    (
+        "the norm judges UGR at observers and the project lists no viewpoint here",
+        "норма оценивает UGR у наблюдателей, а в проекте здесь нет точек наблюдения",
+    ),
+    ("the project lists no {} in this room", "в проекте для этого помещения не задано: {}"),
+    (
+        "the row is for a vertical plane and this area is horizontal",
+        "строка относится к вертикальной плоскости, а область горизонтальная",
+    ),
+    (
+        "the area names no task area to compare with (`of`)",
+        "для области не названа рабочая область для сравнения (`of`)",
+    ),
+    ("no light arrives on the task area: 0/0", "на рабочую область не падает свет: 0/0"),
+    ("nothing of it is judged yet: {}", "пока не оценивается: {}"),
     ("the norm's row has no limit", "строка нормы не содержит предела"),
     ("the quantity is undefined where no light arrives", "величина не определена там, куда не падает свет"),
     ("this quantity is not measured on an area", "эта величина на области не измеряется"),

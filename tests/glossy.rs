@@ -62,16 +62,16 @@ fn uniform_light_shows_the_albedo() {
     for (lobe, other) in lobes(0.5).into_iter().zip(lobes(0.5 * 1.05)) {
         let scene = furnace(glossy("floor", 0.2, lobe));
         let twin = furnace(glossy("floor", 0.2, other));
-        for method in [Method::Links, Method::Path] {
+        for (method, resolve) in [(Method::Links, 0.01), (Method::Path, 0.02)] {
             let found = luminances(&scene, &demand, method, 256);
             let twins = luminances(&twin, &demand, method, 256);
             for ((angle, found), twin) in angles.iter().zip(found).zip(twins) {
                 // L = L0 (ρ_d + a(θ)): the floor sees nothing but the glow.
                 let truth = 100.0 * (0.2 + lobe.albedo(angle.to_radians().cos()));
-                check(&format!("{lobe:?} at {angle}°, {method:?}"), found.value, found.se, truth, 0.01);
-                // The twin's lobe is 5 % stronger: 1 to 4 % of the luminance.
-                if truth > 35.0 {
-                    let rejected = agrees(twin.value, twin.se, truth, 0.01).is_err();
+                check(&format!("{lobe:?} at {angle}°, {method:?}"), found.value, found.se, truth, resolve);
+                // The twin's lobe is 5 % stronger: up to 4 % of the luminance.
+                if truth > 45.0 {
+                    let rejected = agrees(twin.value, twin.se, truth, resolve).is_err();
                     assert!(rejected, "a lobe off by 5 % passes at {angle}°: {twin:?} for {truth}");
                 }
             }

@@ -41,7 +41,12 @@ fn direction(cos: f64, azimuth: f64) -> DVec3 {
 
 /// ∫ f |cos| and ∫ p over the sphere of wi, by midpoints.
 fn integrals(bsdf: &Bsdf, wo: DVec3) -> (f64, f64) {
-    let (rings, sectors) = if bsdf.lobe().is_some() { (3000, 256) } else { (200, 16) };
+    // Half vectors make a lobe narrow in azimuth at grazing incidence.
+    let (rings, sectors) = match bsdf.lobe() {
+        Some(_) if wo.z < 0.2 => (1000, 2048),
+        Some(_) => (3000, 256),
+        None => (200, 16),
+    };
     let (mut energy, mut density) = (0.0, 0.0);
     for i in 0..2 * rings {
         let cos = (f64::from(i) + 0.5) / f64::from(rings) - 1.0;

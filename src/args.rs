@@ -7,8 +7,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use gershun::Settings;
 use gershun::geometry::trace::Simd;
 use gershun::project::{Goal, LoadOptions, Project};
-use gershun::report::Lang;
 use gershun::solve::Method;
+
+pub use crate::args_lamp::LangChoice;
 
 /// Lighting quality from spatial-angular luminance: illuminance, flux and glare with intervals,
 /// judged against norms.
@@ -227,15 +228,6 @@ pub enum SimdChoice {
     Off,
 }
 
-/// Languages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LangChoice {
-    /// English
-    En,
-    /// Russian
-    Ru,
-}
-
 /// Use of colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ColourChoice {
@@ -245,16 +237,6 @@ pub enum ColourChoice {
     Always,
     /// Never
     Never,
-}
-
-impl LangChoice {
-    /// The report's language.
-    pub fn lang(self) -> Lang {
-        match self {
-            Self::En => Lang::En,
-            Self::Ru => Lang::Ru,
-        }
-    }
 }
 
 impl Check {

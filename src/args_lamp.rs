@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
 
-use crate::args::LangChoice;
+use gershun::report::Lang;
 
 /// Commands for photometric files.
 #[derive(Subcommand, Debug)]
@@ -133,6 +133,25 @@ pub struct FarFieldArgs {
     /// Let the project name files outside its folder
     #[arg(long)]
     pub allow_outside: bool,
+}
+
+/// Languages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LangChoice {
+    /// English
+    En,
+    /// Russian
+    Ru,
+}
+
+impl LangChoice {
+    /// The report's language.
+    pub fn lang(self) -> Lang {
+        match self {
+            Self::En => Lang::En,
+            Self::Ru => Lang::Ru,
+        }
+    }
 }
 
 /// Output of `lamp info`.

@@ -145,8 +145,9 @@ fn convert(input: &Path, output: &Path) -> Result<u8, String> {
     Ok(say(&format!("{}\n{}", output.display(), told.concat())))
 }
 
-/// A line on standard error for each photometric file of a project that has faults.
-pub fn warn(path: &Path, project: &Project) {
+/// A line for each photometric file of a project that has faults.
+pub fn faults(path: &Path, project: &Project) -> Vec<String> {
+    let mut told = Vec::new();
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
     let luminaires = project.worlds.iter().flat_map(|world| &world.scene.luminaires);
     let mut files: Vec<&str> = luminaires.map(|luminaire| luminaire.kind.file.as_str()).collect();
@@ -166,9 +167,12 @@ pub fn warn(path: &Path, project: &Project) {
         codes.dedup();
         if !codes.is_empty() {
             let (codes, path) = (codes.join(", "), path.display());
-            eprintln!("warning: {file}: {codes}; `gershun lamp lint {path}` says what follows from it");
+            told.push(format!(
+                "warning: {file}: {codes}; `gershun lamp lint {path}` says what follows from it"
+            ));
         }
     }
+    told
 }
 
 /// Steps of angle that a table may have, degrees.

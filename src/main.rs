@@ -110,7 +110,9 @@ fn load_one(path: &Path, check: &Check) -> Option<Project> {
     match load(path, &check.load_options()) {
         Ok(project) => {
             if !check.quiet {
-                commands_lamp::warn(path, &project);
+                for fault in commands_lamp::faults(path, &project) {
+                    eprintln!("{fault}");
+                }
             }
             Some(project)
         }

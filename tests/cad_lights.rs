@@ -109,3 +109,43 @@ fn broken_lights_matter_only_where_they_shine() {
     let error = project(folder.path(), "lights = true", &none).expect_err("no lights");
     assert!(error.contains("no light sources"), "{error}");
 }
+
+/// Catches: a far field that is not written, cannot be read back or loses its flux; a group that is not
+/// chosen; a closed room that gives an empty file.
+#[test]
+fn installed_luminaires_become_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    project(folder.path(), "lights = true", &gltf()).expect("loads");
+    let run = |arguments: &[&str]| {
+        std::process::Command::new(env!("CARGO_BIN_EXE_gershun"))
+            .current_dir(folder.path())
+            .args(arguments)
+            .output()
+            .expect("runs")
+    };
+    let far =
+        run(&["lamp", "far-field", "project.toml", "--group", "Bulb", "--out", "bulb.ldt", "--blocks", "32"]);
+    let said = String::from_utf8_lossy(&far.stdout).into_owned();
+    assert_eq!(far.status.code(), Some(0), "{said}{}", String::from_utf8_lossy(&far.stderr));
+    assert!(said.contains("bulb.ldt") && said.contains("emitted"), "{said}");
+    let bytes = std::fs::read(folder.path().join("bulb.ldt")).expect("written");
+    let file = gershun::photometry::parse(&bytes, "bulb.ldt").expect("readable");
+    // 35.76 cd upwards and ρ/π I Ω cos 30° from the floor, Ω = 1.4386 sr; from below the floor hides it.
+    let truth = 35.76 * (1.0 + 0.3 / std::f64::consts::PI * 1.4386 * 30_f64.to_radians().cos());
+    let found = file.distribution.intensity_at(0.0, 150.0);
+    assert!((found / truth - 1.0).abs() < 0.04, "{found} {truth}");
+    assert!(file.distribution.intensity_at(0.0, 0.0) < 0.01);
+    let lor = file.lor.expect("a light output ratio");
+    assert!((lor - 0.9199).abs() < 0.03, "{lor}");
+    let json = run(&["lamp", "far-field", ".", "--group", "Spot", "--format", "json", "--blocks", "32"]);
+    let value: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+    assert!(value["lor"]["lo"].as_f64() < value["lor"]["hi"].as_f64(), "{value}");
+    assert_eq!(run(&["lamp", "far-field", ".", "--group", "Nobody"]).status.code(), Some(2));
+    assert_eq!(run(&["lamp", "far-field", ".", "--c-step", "7"]).status.code(), Some(2));
+    let closed = "[scene]\nbox = { size = [3, 3, 3], floor = 0.2, walls = 0.5, ceiling = 0.7 }\n\
+                  [luminaires.A]\npoint = { flux = 100 }\n[[place]]\nluminaire = \"A\"\nat = [1.5, 1.5, 2]\n";
+    std::fs::write(folder.path().join("project.toml"), closed).expect("written");
+    let dark = run(&["lamp", "far-field", ".", "--blocks", "32"]);
+    assert_eq!(dark.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&dark.stderr).contains("no light leaves the scene"));
+}

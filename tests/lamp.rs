@@ -94,6 +94,10 @@ fn lint_and_explain() {
         let value: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
         assert!(value.to_string().contains("flux-contradiction"));
     }
+    let russian = out(&run(folder.path(), &["lamp", "lint", "--lang", "ru", "rated.ies"]));
+    assert!(russian.contains("ошибка[flux-contradiction]") && russian.contains("файлов: 1"), "{russian}");
+    let russian = out(&run(folder.path(), &["lamp", "info", "--lang", "ru", "sound.ies"]));
+    assert!(russian.contains("световой поток") && !russian.contains("opening"), "{russian}");
     assert!(out(&run(folder.path(), &["explain", "spike"])).starts_with("spike (warning)\n"));
     assert_eq!(code(&["explain", "spikes"]), Some(2));
 }

@@ -43,8 +43,9 @@ pub fn human(batch: &[Batch], lang: Lang) -> String {
     put(
         &mut text,
         format_args!(
-            "{}: {}, {}, {}\n",
+            "{}{} {}, {}, {}\n",
             counted(batch.len(), "file", say("files")),
+            if lang == Lang::Ru { "," } else { ":" },
             counted(errors, "error", say("errors")),
             counted(warnings, "warning", say("warnings")),
             counted(notes, "note", say("notes"))

@@ -15,6 +15,7 @@ mod settings;
 mod shell;
 mod viewpoints;
 mod walled;
+mod zones;
 
 use super::context::Context;
 use super::schema::File;
@@ -45,7 +46,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     let kinds = luminaires::kinds(file, context);
     places::add(file, kinds, &mut drafts, context);
     let light_scenes = settings::light_scenes(file, &drafts, context);
-    areas::add(file, &mut drafts, &light_scenes, context);
+    areas::add(file, &mut drafts, &light_scenes, norm.as_ref(), context);
     viewpoints::add(file, &mut drafts, &light_scenes, context);
     settings::requirements(file, &mut drafts, &light_scenes, context);
     let declared = settings::declared(file, &drafts, context);

@@ -9,8 +9,8 @@ use crate::luminaire::LuminaireType;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{self, Answers, Gauged, area, flux, room_ugr, view};
 use crate::outcome::{
-    AreaOutcome, LuminaireOutcome, PointField, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome, Value,
-    Verdict, ViewpointOutcome,
+    AreaOutcome, LuminaireOutcome, PointField, Power, Requirement, RoomOutcome, TypeOutcome, UgrTableOutcome,
+    Value, Verdict, ViewpointOutcome,
 };
 use crate::plan::{Plan, PlannedRequirement, PlannedRoom, Subject};
 use crate::project::{Compare, Declared, Project, Room, World};
@@ -311,6 +311,8 @@ impl Context<'_> {
             furniture: furniture(self.world, room),
             flux,
             ugr_table: self.tables[index].first().map_or_else(Vec::new, |(_, table)| table.clone()),
+            power: self.power(index),
+            dimming: judge::dimming(&self.requirements(index)),
         };
         (outcome, values)
     }
@@ -464,6 +466,46 @@ impl Context<'_> {
             .filter(|((channel, _), _)| matches!(channel, Channel::Surfaces { .. }))
             .map(|((_, weight), flux)| weight * flux);
         of_luminaires.chain(of_surfaces).sum()
+    }
+
+    /// Installed power, per floor area and per 100 lx of the mean on the horizontal task areas under the
+    /// first light scene.
+    fn power(&self, index: usize) -> Option<Power> {
+        let (room, planned) = (&self.world.rooms[index], &self.plan.rooms[index]);
+        let scene = &self.world.scene;
+        let watts = room.luminaires.iter().map(|&l| scene.luminaires[l].kind.power_w);
+        let installed_w = watts.collect::<Option<Vec<f64>>>()?.into_iter().sum::<f64>();
+        let corners = &room.footprint;
+        let count = corners.len();
+        let doubled: f64 = (0..count).map(|i| corners[i].perp_dot(corners[(i + 1) % count])).sum();
+        let area_m2 = 0.5 * doubled.abs();
+        if !(installed_w > 0.0 && area_m2 > 0.0) {
+            return None;
+        }
+        let weights = self.weights(0, room, true);
+        let (mut flux_lm, mut lit_m2) = (0.0, 0.0);
+        for area in planned.areas.iter().filter(|area| area.kind == crate::project::AreaKind::Task) {
+            let Some(entry) = area.quantities.iter().find(|q| q.quantity == Quantity::Horizontal) else {
+                continue;
+            };
+            let blocks = area::blocks(&self.answers, entry, &weights);
+            let cell_m2 = area.grid.spacing_m[0] * area.grid.spacing_m[1];
+            if let Ok(mean_lx) = area::gauge(&blocks, Statistic::Mean, self.alpha).value {
+                let own_m2 = cell_m2 * blocks.values.len() as f64;
+                flux_lm += mean_lx * own_m2;
+                lit_m2 += own_m2;
+            }
+        }
+        let mean_lx = (lit_m2 > 0.0).then(|| flux_lm / lit_m2).filter(|mean| *mean > 0.0);
+        let density_w_m2 = installed_w / area_m2;
+        Some(Power {
+            installed_w,
+            area_m2,
+            density_w_m2,
+            mean_lx,
+            density_w_m2_100lx: mean_lx.map(|mean| density_w_m2 / (mean / 100.0)),
+            light_scene: self.project.light_scenes[0].name.clone(),
+        })
     }
 
     /// Block values of Σ Ē·A over the task areas, lm.

@@ -2,7 +2,7 @@
 //! of the limit; within the indifference margin the value decides and is called "at the limit".
 
 use crate::measure::Gauged;
-use crate::outcome::{Bound, Verdict};
+use crate::outcome::{Bound, Dimming, Requirement, Verdict};
 use crate::project::Compare;
 use crate::quantity::{Quantity, Statistic};
 
@@ -68,6 +68,41 @@ pub fn blocks_needed(gauged: &Gauged, quantity: Quantity, bound: Bound, blocks: 
     }
     let needed = blocks as f64 * (half / enough).powi(2);
     (needed.is_finite() && needed < 1e12).then(|| (needed.ceil() as usize).max(blocks + 1))
+}
+
+/// The least factor by which all luminaires may be dimmed together: every illuminance is linear in it,
+/// its interval too, and uniformities and ratios do not change. UGR only falls, which is not counted.
+/// `None` where no illuminance is required from below, or one has no value.
+pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
+    let is_level = |r: &&Requirement| r.quantity.unit() == "lx" && !r.statistic.is_ratio();
+    let judged = |r: &&Requirement| {
+        matches!(r.verdict, Verdict::Pass | Verdict::Fail | Verdict::Undecided | Verdict::Undefined)
+    };
+    let mut least: Option<(f64, &Requirement)> = None;
+    for requirement in requirements.iter().filter(is_level).filter(judged) {
+        let Bound::Min(limit) = requirement.bound else { continue };
+        if !(requirement.lo_joint > 0.0) || requirement.value.is_err() {
+            return None;
+        }
+        // At the limit the value decides, not the interval's end.
+        let known = match &requirement.value {
+            Ok(value) if requirement.at_the_limit => *value,
+            _ => requirement.lo_joint,
+        };
+        let factor = limit / known;
+        if least.is_none_or(|(found, _)| factor > found) {
+            least = Some((factor, requirement));
+        }
+    }
+    let (factor, by) = least?;
+    let mut others =
+        requirements.iter().filter(judged).filter(|r| !is_level(r) || matches!(r.bound, Bound::Max(_)));
+    Some(Dimming {
+        factor,
+        subject: by.subject.clone(),
+        quantity: by.quantity.key(),
+        others_pass: others.all(|r| r.verdict == Verdict::Pass),
+    })
 }
 
 /// A value as norms print it, rounded half-up: illuminance to three significant figures, ratios to

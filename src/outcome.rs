@@ -118,6 +118,41 @@ pub struct RoomOutcome {
     pub flux: Vec<FluxBalance>,
     /// UGR by the table method, crosswise and endwise, per luminaire type.
     pub ugr_table: Vec<UgrTableOutcome>,
+    /// Installed power; `None` where a luminaire's power is not known.
+    pub power: Option<Power>,
+    /// How far all luminaires may be dimmed together; `None` where no illuminance is required.
+    pub dimming: Option<Dimming>,
+}
+
+/// Installed power of a room, all luminaires at full output.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Power {
+    /// Of all luminaires, W.
+    pub installed_w: f64,
+    /// Of the floor, m².
+    pub area_m2: f64,
+    /// W/m².
+    pub density_w_m2: f64,
+    /// Mean maintained illuminance on the horizontal task areas under `light_scene`, lx.
+    pub mean_lx: Option<f64>,
+    /// W/m² for every 100 lx of it.
+    pub density_w_m2_100lx: Option<f64>,
+    /// The first light scene.
+    pub light_scene: String,
+}
+
+/// The least common factor on all luminaires with which a room still complies.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Dimming {
+    /// The factor: below 1 there is light to spare, above 1 so much flux is missing. The lower ends of
+    /// the joint intervals, times the factor, reach their limits.
+    pub factor: f64,
+    /// Subject of the requirement that decides.
+    pub subject: String,
+    /// Its quantity.
+    pub quantity: String,
+    /// Whether what dimming cannot mend (uniformity, ratios, glare) passes.
+    pub others_pass: bool,
 }
 
 /// One luminaire on the plan.

@@ -218,6 +218,30 @@ fn points_off_by_a_thousandth_would_be_noticed() {
     assert!((mean(&off) - found).abs() > 1e-9 * found);
 }
 
+/// Catches: power of a type counted once instead of for every luminaire, the wrong area, a mean that is
+/// not that of the task areas.
+#[test]
+fn the_power_of_a_room_is_that_of_its_luminaires() {
+    for (report, installed_w, area_m2) in [
+        ("classroom-sanpin", 9.0 * 14.0 + 3.0 * 38.0, 54.0),
+        ("sports-hall", 32.0 * 150.0, 36.0 * 22.0),
+        ("warehouse", 15.0 * 75.0 + 12.0 * 52.0, 30.0 * 18.0),
+    ] {
+        let text = std::fs::read_to_string(root().join("reports").join(report).join("result.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let power = &json["rooms"][0]["power"];
+        let of = |key: &str| power[key].as_f64().unwrap();
+        assert!((of("installed_w") - installed_w).abs() < 1e-9, "{report}: {power}");
+        assert!((of("density_w_m2") - installed_w / area_m2).abs() < 1e-9, "{report}: {power}");
+        let expected = installed_w / area_m2 / of("mean_lx") * 100.0;
+        assert!((of("density_w_m2_100lx") - expected).abs() < 1e-9, "{report}: {power}");
+        if report == "classroom-sanpin" {
+            let desks = on_points(&table(report, "points.csv"), "Desks", "all", "E_h");
+            assert!((of("mean_lx") - mean(&desks)).abs() < 1e-9 * mean(&desks));
+        }
+    }
+}
+
 /// Catches: reasons in the scenes' README that the reports do not bear out.
 #[test]
 fn the_scenes_comply_or_fail_as_their_readme_says() {

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::ReportError;
 use super::sentence::{bound, verdict_key};
 use crate::outcome::{
-    AreaOutcome, Bias, FluxBalance, GlareSourceOutcome, Interval, Modified, NormOutcome, Outcome,
-    Requirement, RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
+    AreaOutcome, Bias, Dimming, FluxBalance, GlareSourceOutcome, Interval, Modified, NormOutcome, Outcome,
+    Power, Requirement, RoomOutcome, Solver, TypeOutcome, UgrTableOutcome, Value, ViewpointOutcome,
 };
 use crate::project::{AreaKind, Info, InputFile};
 use crate::quantity::{Quantity, Statistic};
@@ -90,6 +90,8 @@ struct RoomRow<'a> {
     areas: Vec<AreaRow<'a>>,
     viewpoints: Vec<ViewpointRow<'a>>,
     ugr_table: Vec<UgrTableRow<'a>>,
+    power: Option<&'a Power>,
+    dimming: Option<&'a Dimming>,
     flux: &'a [FluxBalance],
 }
 
@@ -258,6 +260,8 @@ fn room(room: &RoomOutcome) -> RoomRow<'_> {
         areas: room.areas.iter().map(area).collect(),
         viewpoints: room.viewpoints.iter().map(viewpoint).collect(),
         ugr_table: room.ugr_table.iter().map(ugr_table).collect(),
+        power: room.power.as_ref(),
+        dimming: room.dimming.as_ref(),
         flux: &room.flux,
     }
 }

@@ -48,10 +48,20 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         .sum::<f64>()
         .abs()
         / 2.0;
-    let power_w: Option<f64> =
-        room.types.iter().map(|kind| kind.power_w.map(|power| power * kind.count as f64)).sum();
-    let density = power_w.filter(|power| *power > 0.0 && area_m2 > 0.0).map_or(String::new(), |power| {
-        format!("{} {}", number::fixed(lang, power / area_m2, 2), word(lang, Term::UnitPowerDensity))
+    let density = room.power.as_ref().map_or(String::new(), |power| {
+        let unit = word(lang, Term::UnitPowerDensity);
+        let own = format!("{} {unit}", number::fixed(lang, power.density_w_m2, 2));
+        let by_light = power.density_w_m2_100lx.map(|density| number::fixed(lang, density, 2));
+        by_light.map_or(own.clone(), |per| format!("{own}; {}", phrase(lang, Term::PowerPerLight, &[&per])))
+    });
+    let dimming = room.dimming.as_ref().map_or(String::new(), |dimming| {
+        let term = match (dimming.factor <= 1.0, dimming.others_pass) {
+            (true, true) => Term::DimTo,
+            (true, false) => Term::DimToBut,
+            (false, _) => Term::FluxMissing,
+        };
+        let factor = number::fixed(lang, dimming.factor, 2);
+        phrase(lang, term, &[&factor, &escape(&dimming.subject)])
     });
     let metres = |length| format!("{} {}", number::metres(lang, length), word(lang, Term::UnitMetre));
     let [ceiling, walls, floor] = room.reflectances.map(|reflectance| number::fixed(lang, reflectance, 2));
@@ -65,6 +75,7 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         (word(lang, Term::Reflectances), format!("{ceiling} / {walls} / {floor}")),
         (word(lang, Term::RowOfNorm), room.row.as_deref().map_or(String::new(), escape)),
         (word(lang, Term::PowerDensity), density),
+        (word(lang, Term::Dimming), dimming),
     ])
 }
 

@@ -249,6 +249,20 @@ fn office() -> RoomOutcome {
             rectangle(4.6, 1.8, 1.6, 0.8),
         ],
         flux: vec![balance("full", 25_291.8), balance("половина / half", 12_645.9)],
+        power: Some(Power {
+            installed_w: 240.0,
+            area_m2: 40.0,
+            density_w_m2: 6.0,
+            mean_lx: Some(520.0),
+            density_w_m2_100lx: Some(6.0 / 5.2),
+            light_scene: "full".into(),
+        }),
+        dimming: Some(Dimming {
+            factor: 0.96,
+            subject: NASTY.into(),
+            quantity: "E_h".into(),
+            others_pass: false,
+        }),
         ugr_table: vec![
             UgrTableOutcome {
                 kind: "A".into(),
@@ -284,6 +298,8 @@ fn corridor() -> RoomOutcome {
         furniture: Vec::new(),
         flux: Vec::new(),
         ugr_table: Vec::new(),
+        power: None,
+        dimming: None,
     }
 }
 

@@ -8,13 +8,14 @@ use glam::{DVec2, DVec3};
 use super::area_surface::on_surface;
 use super::draft::{Draft, Located, in_room, locate, room_named, room_names};
 use super::lists::Table;
+use super::zones;
 use crate::geometry::polygon;
 use crate::grid::GridRule;
 use crate::project::choices::AreaGrid;
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
 use crate::project::schema::{AreaSection, At, File, RectSection};
-use crate::project::{AreaKind, AreaShape, AreaSpec, LightScene};
+use crate::project::{AreaKind, AreaShape, AreaSpec, LightScene, Norm};
 use crate::quantity::{Quantity, SPELLINGS};
 
 /// Smallest edge of an area, m.
@@ -23,10 +24,19 @@ const SMALLEST_M: f64 = 1e-3;
 const MAX_POINTS: usize = 1_000_000;
 
 /// Adds all areas to their worlds.
-pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], context: &mut Context) {
+pub fn add(
+    file: &File,
+    drafts: &mut [Draft],
+    light_scenes: &[LightScene],
+    norm: Option<&Norm>,
+    context: &mut Context,
+) {
     let sections = &file.areas;
     let mut surroundings: Vec<(usize, usize, At<String>)> = Vec::new();
-    for section in sections {
+    // Zones that the norm draws round a task come after the tasks, wherever they are listed.
+    let (drawn, listed): (Vec<&At<AreaSection>>, Vec<&At<AreaSection>>) =
+        sections.iter().partition(|section| zones::is_drawn(section.get_ref()));
+    for section in listed.into_iter().chain(drawn) {
         let span = section.span();
         let section = section.get_ref();
         let name = section.name.get_ref();
@@ -43,7 +53,11 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         }
         let kind = section.kind.unwrap_or(AreaKind::Task);
         let wanted = wanted_room(section, drafts, context);
-        let placed = shape(section, &span, drafts, wanted, context);
+        let placed = if zones::is_drawn(section) {
+            zones::around(section, file, drafts, norm, context)
+        } else {
+            shape(section, &span, drafts, wanted, context)
+        };
         let (Some((shape, world, room)), Ok(_)) = (placed, wanted) else {
             continue;
         };
@@ -175,7 +189,8 @@ fn shape(
             "area \"{}\" needs exactly one of rect, polygon, surface, points",
             section.name.get_ref()
         );
-        context.missing(span, message, "");
+        let hint = "or, for a surrounding or background, none of them and `of = \"<task area>\"`";
+        context.missing(span, message, hint);
         return None;
     }
     if let Some(surface) = &section.surface {

@@ -18,6 +18,7 @@ mod settings;
 mod shell;
 mod viewpoints;
 mod walled;
+mod zones;
 
 use super::context::Context;
 use super::schema::File;
@@ -49,7 +50,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     places::add(file, kinds, &mut drafts, context);
     lights::add(file.scene.as_ref(), &mut drafts, context);
     let light_scenes = settings::light_scenes(file, &drafts, context);
-    areas::add(file, &mut drafts, &light_scenes, context);
+    areas::add(file, &mut drafts, &light_scenes, norm.as_ref(), context);
     viewpoints::add(file, &mut drafts, &light_scenes, context);
     glare_maps::add(file, &mut drafts, &light_scenes, context);
     settings::requirements(file, &mut drafts, &light_scenes, context);

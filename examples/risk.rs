@@ -1,0 +1,164 @@
+//! How often a verdict near its limit is wrong: 1 000 seeds of a small room, each judged as `check` does,
+//! looks included, on four quantities with a limit a little above the truth and one a little below.
+//! The truth is one long run with another seed. Writes CSV and a table to reports/risk:
+//!
+//!     cargo run --release --example risk [SEEDS]
+#![allow(clippy::print_stdout, reason = "a study prints")]
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use gershun::grid::GridRule;
+use gershun::outcome::{Outcome, Verdict};
+use gershun::project::{
+    AreaKind, AreaShape, AreaSpec, CustomRequirement, CustomSubject, LoadOptions, Project, Viewpoint, load,
+};
+use gershun::quantity::{Quantity, Statistic};
+use gershun::{Settings, Watch, run};
+use glam::DVec3;
+
+/// Blocks of the long run.
+const TRUTH_BLOCKS: usize = 16_384;
+/// Blocks at which a run gives up, as `--accuracy draft` does.
+const MOST_BLOCKS: usize = 64;
+
+/// What is judged: name, subject, quantity, statistic, and how far from the truth its limits lie, as a
+/// share of it (UGR: in UGR). More than the indifference margin of 0.5 % and 0.1 UGR.
+const JUDGED: [(&str, CustomSubject, Quantity, Statistic, f64); 4] = [
+    ("Ē", CustomSubject::Area(0), Quantity::Horizontal, Statistic::Mean, 0.006),
+    ("U0", CustomSubject::Area(0), Quantity::Horizontal, Statistic::U0, 0.03),
+    ("E_cyl", CustomSubject::Area(0), Quantity::Cylindrical, Statistic::Mean, 0.008),
+    ("UGR", CustomSubject::Viewpoint(0), Quantity::Ugr, Statistic::Value, 0.15),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let seeds: u64 = std::env::args().nth(1).map_or(Ok(1000), |text| text.parse())?;
+    let mut project = small_room()?;
+    let truth = truth(&mut project)?;
+    let mut limits = Vec::new();
+    let world = &mut project.worlds[0];
+    world.requirements.clear();
+    for (&(_, subject, quantity, statistic, distance), &value) in JUDGED.iter().zip(&truth) {
+        let by = if quantity == Quantity::Ugr { distance } else { distance * value };
+        for limit in [value - by, value + by] {
+            limits.push(limit);
+            world.requirements.push(CustomRequirement {
+                subject,
+                quantity,
+                statistic,
+                min: Some(limit),
+                max: None,
+                light_scene: None,
+            });
+        }
+    }
+    let settings = Settings { most_blocks: MOST_BLOCKS, ..Settings::default() };
+    let (mut counts, mut families) = (vec![[0usize; 3]; limits.len()], 0usize);
+    for seed in 1..=seeds {
+        project.accuracy.seed = seed;
+        let outcome = solve(&project, &settings)?;
+        let mut any = false;
+        for (index, requirement) in outcome.requirements.iter().enumerate() {
+            // "At least": a limit below the truth is met, one above it is not.
+            let right = if index % 2 == 0 { Verdict::Pass } else { Verdict::Fail };
+            let column = match requirement.verdict {
+                verdict if verdict == right => 0,
+                Verdict::Pass | Verdict::Fail => 1,
+                _ => 2,
+            };
+            counts[index][column] += 1;
+            any |= column == 1;
+        }
+        families += usize::from(any);
+    }
+    write(seeds, &truth, &limits, &counts, families, 1.0 - project.accuracy.confidence)
+}
+
+/// The box of the example scenes with a desk, an observer, and no norm.
+fn small_room() -> Result<Project, Box<dyn Error>> {
+    let mut project =
+        load(Path::new("scenes/box"), &LoadOptions::default()).map_err(|_| "scenes/box does not load")?;
+    project.norm = None;
+    let world = &mut project.worlds[0];
+    world.areas = vec![AreaSpec {
+        name: "Desk".into(),
+        kind: AreaKind::Task,
+        of: None,
+        room: 0,
+        row: None,
+        light_scene: None,
+        shape: AreaShape::Rect { origin: DVec3::new(1.2, 1.0, 0.75), u: DVec3::X * 1.6, v: DVec3::Y * 0.8 },
+        rule: GridRule::Count([5, 3]),
+        border_m: 0.0,
+        quantities: vec![Quantity::Horizontal, Quantity::Cylindrical],
+    }];
+    world.viewpoints = vec![Viewpoint {
+        name: "Eye".into(),
+        room: 0,
+        eye: DVec3::new(0.6, 2.0, 1.2),
+        directions: vec![DVec3::X],
+        indices: vec![Quantity::Ugr],
+        light_scene: None,
+    }];
+    Ok(project)
+}
+
+fn solve(project: &Project, settings: &Settings) -> Result<Outcome, Box<dyn Error>> {
+    let never = AtomicBool::new(false);
+    Ok(run(project, settings, &Watch { progress: &|_| {}, interrupted: &never })?)
+}
+
+/// Values of one long run.
+fn truth(project: &mut Project) -> Result<Vec<f64>, Box<dyn Error>> {
+    project.accuracy.seed = u64::MAX;
+    project.worlds[0].requirements.clear();
+    let settings = Settings { exact_blocks: Some(vec![TRUTH_BLOCKS]), ..Settings::default() };
+    let outcome = solve(project, &settings)?;
+    JUDGED
+        .iter()
+        .map(|(name, _, quantity, statistic, _)| {
+            let (quantity, statistic) = (quantity.key(), statistic.key());
+            let same =
+                |value: &&gershun::outcome::Value| value.quantity == quantity && value.statistic == statistic;
+            let found = outcome.values.iter().find(same).and_then(|value| value.estimate.as_ref().ok());
+            found.map(|estimate| estimate.value).ok_or_else(|| format!("{name} has no value").into())
+        })
+        .collect()
+}
+
+fn write(
+    seeds: u64,
+    truth: &[f64],
+    limits: &[f64],
+    counts: &[[usize; 3]],
+    families: usize,
+    alpha: f64,
+) -> Result<(), Box<dyn Error>> {
+    let mut csv = "quantity,truth,limit_at_least,runs,right,wrong,undecided\n".to_owned();
+    let mut table = String::new();
+    for (index, (limit, [right, wrong, open])) in limits.iter().zip(counts).enumerate() {
+        let (name, value) = (JUDGED[index / 2].0, truth[index / 2]);
+        writeln!(csv, "{name},{value},{limit},{seeds},{right},{wrong},{open}")?;
+        writeln!(table, "| {name} | {value:.3} | {limit:.3} | {right} | {wrong} | {open} |")?;
+    }
+    let expected = alpha * seeds as f64;
+    let most = expected + 5.0 * (expected * (1.0 - alpha)).sqrt();
+    let share = 100.0 * families as f64 / seeds as f64;
+    let text = format!(
+        "# Risk of a wrong verdict\n\n{seeds} seeds of a small room, each judged on eight limits just beside the truth, at most\n{MOST_BLOCKS} blocks, looks after 32 and 64. Made by `cargo run --release --example risk {seeds}`.\n\n\
+         | quantity | truth | limit, at least | right | wrong | undecided |\n|---|---|---|---|---|---|\n{table}\n\
+         Runs with any wrong verdict: {families}, {share:.1} %; stated: at most {:.0} % for all verdicts of a room together.\nThe truth is one run of {TRUTH_BLOCKS} blocks. An undecided verdict is not a wrong one: it asks for more blocks.\n",
+        100.0 * alpha
+    );
+    let folder = Path::new("reports/risk");
+    std::fs::create_dir_all(folder)?;
+    std::fs::write(folder.join("risk.csv"), csv)?;
+    std::fs::write(folder.join("README.md"), &text)?;
+    println!("{text}");
+    if families as f64 > most {
+        return Err(format!("{families} runs with a wrong verdict, more than {most:.0}").into());
+    }
+    Ok(())
+}

@@ -1,0 +1,304 @@
+//! Norms applied to whole projects: what is asked, of what, and what is said where nothing can be
+//! judged. Catches limits that vanish in silence, planes and zones mixed up, a context that changes the
+//! wrong number.
+
+mod projects;
+
+use std::path::Path;
+use std::process::Command;
+
+use gershun::outcome::{Bound, Outcome, Requirement, Verdict};
+use gershun::project::{LoadOptions, load};
+use gershun::quantity::{Quantity, Statistic};
+use gershun::solve::Effort;
+use projects::{folder, run};
+
+/// A room of 8 × 5 × 2.8 m with a desk, and what a test adds.
+fn room(norm: &str, rest: &str) -> String {
+    format!(
+        "[project]\nname = \"Room\"\n[scene]\nbox = {{ size = [8, 5, 2.8], floor = 0.2, walls = 0.5, ceiling = 0.7 }}\n\
+         [luminaires.A]\nlambert = {{ flux = 6000 }}\narea = {{ rect = [1.2, 0.3] }}\n\
+         [[place]]\nluminaire = \"A\"\nfield = {{ rows = 2, columns = 3, height = 2.79 }}\n\
+         [norm]\nstandard = \"{norm}\"\n{rest}"
+    )
+}
+
+const DESK: &str =
+    "[[area]]\nname = \"Desk\"\nrect = { origin = [3, 2, 0.75], u = [1.6, 0, 0], v = [0, 0.8, 0] }\n";
+
+fn solved(text: &str) -> Outcome {
+    run(text, &[], 32, Effort::default())
+}
+
+fn of<'a>(outcome: &'a Outcome, subject: &str, statistic: Statistic) -> Vec<&'a Requirement> {
+    let wanted = |r: &&Requirement| r.subject == subject && r.statistic == statistic;
+    outcome.requirements.iter().filter(wanted).collect()
+}
+
+fn mistakes(text: &str) -> String {
+    let folder = folder(text, &[]);
+    let errors = load(folder.path(), &LoadOptions::default()).expect_err("a mistake");
+    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_room_says_why_its_row_asks_for_more_and_only_its_row_does() {
+    let modified =
+        "[[room]]\nname = \"Office\"\nrow = \"34.2\"\nmodified = { steps = 1, reason = \"small details\" }\n";
+    let board = "[[area]]\nname = \"Table\"\nrow = \"34.6\"\nrect = { origin = [1, 1, 0.75], u = [1.6, 0, 0], v = [0, 0.8, 0] }\n";
+    let around = "[[area]]\nname = \"Around\"\nkind = \"surrounding\"\nof = \"Desk\"\nrect = { origin = [2.5, 1.5, 0.75], u = [2.6, 0, 0], v = [0, 1.8, 0] }\n";
+    let outcome = solved(&room("en-12464-1-2021", &format!("{modified}{DESK}{board}{around}")));
+    let desk = of(&outcome, "Desk", Statistic::Mean)[0];
+    assert_eq!(desk.bound, Bound::Min(750.0));
+    let context = desk.modified.as_ref().expect("it is modified");
+    assert_eq!((context.required_lx.to_bits(), context.steps), (500f64.to_bits(), Some(1)));
+    assert_eq!(context.reason, "small details");
+    let around = of(&outcome, "Around", Statistic::Mean)[0];
+    assert_eq!(around.bound, Bound::Min(500.0), "the surrounding follows 750 lx");
+    let table = of(&outcome, "Table", Statistic::Mean)[0];
+    assert_eq!(
+        (table.bound, table.modified.is_some()),
+        (Bound::Min(300.0), false),
+        "another row keeps its own"
+    );
+    let uniformity = of(&outcome, "Desk", Statistic::U0)[0];
+    assert_eq!((uniformity.bound, uniformity.modified.is_some()), (Bound::Min(0.6), false));
+    // Without steps it is the row's own value for difficult conditions.
+    let own = modified.replace("steps = 1, ", "");
+    let outcome = solved(&room("en-12464-1-2021", &format!("{own}{DESK}")));
+    assert_eq!(of(&outcome, "Desk", Statistic::Mean)[0].bound, Bound::Min(1000.0));
+}
+
+#[test]
+fn a_modification_without_reason_row_or_step_is_refused_in_its_place() {
+    let with = |modified: &str, row: &str| {
+        mistakes(&room(
+            "en-12464-1-2021",
+            &format!("[[room]]\nname = \"Office\"\n{row}modified = {modified}\n{DESK}"),
+        ))
+    };
+    let row = "row = \"34.2\"\n";
+    assert!(with("{ steps = 1 }", row).contains("the key \"reason\" is missing"));
+    assert!(with("{ steps = 1, reason = \" \" }", row).contains("needs its reason"));
+    assert!(with("{ steps = 40, reason = \"x\" }", row).contains("leave the norm's scale"));
+    assert!(with("{ steps = 1, reason = \"x\" }", "").contains("needs a row to modify"));
+    assert!(with("{ reason = \"x\" }", "row = \"12.1\"\n").contains("is not known here"));
+}
+
+#[test]
+fn what_cannot_be_judged_is_listed_and_never_passes() {
+    // A column that the file does not know, a zone without an area, a quantity nobody computes.
+    let outcome = solved(&room("en-12464-1-2021", &format!("row = \"12.1\"\n{DESK}")));
+    let open: Vec<&Requirement> =
+        outcome.requirements.iter().filter(|r| r.verdict == Verdict::NotAssessed).collect();
+    let reason = |part: &str| {
+        let says =
+            |r: &&&Requirement| r.value.as_ref().is_err_and(|undefined| undefined.reason.contains(part));
+        open.iter().filter(says).count()
+    };
+    assert_eq!(reason("no value of em_walls"), 1);
+    assert_eq!(reason("no value of em_cylindrical"), 1);
+    assert_eq!(reason("lists no surrounding area"), 1, "the desk does not fill the room");
+    assert_eq!(reason("lists no background area"), 1);
+    assert_eq!(reason("not declared"), 1);
+    // A task area that fills the room has nothing around it.
+    let whole =
+        "[[area]]\nname = \"All\"\nrect = { origin = [0.5, 0.5, 0.75], u = [7, 0, 0], v = [0, 4, 0] }\n";
+    let outcome = solved(&room("en-12464-1-2021", &format!("row = \"12.1\"\n{whole}")));
+    assert!(of(&outcome, "surrounding area", Statistic::Mean).is_empty());
+    // Norms that cannot be judged yet.
+    for (norm, row) in [("en-1838-2013", "open-area"), ("en-17037-2018", "minimum")] {
+        let outcome = solved(&room(norm, &format!("row = \"{row}\"\n{DESK}")));
+        assert!(!outcome.requirements.is_empty(), "{norm}");
+        assert!(outcome.requirements.iter().all(|r| r.verdict == Verdict::NotAssessed), "{norm}");
+        assert_eq!(outcome.verdict(), None, "{norm}: nothing was judged");
+    }
+}
+
+#[test]
+fn russian_norms_have_their_own_planes_statistics_and_no_zones() {
+    let board = "[[area]]\nname = \"Board\"\nrow = \"15-board\"\nrect = { origin = [0.02, 1, 1], u = [0, 3, 0], v = [0, 0, 1] }\n\
+                 [[area]]\nname = \"Flat\"\nrow = \"15-board\"\nrect = { origin = [1, 1, 1.5], u = [1, 0, 0], v = [0, 1, 0] }\n\
+                 [[area]]\nname = \"Screen\"\nrow = \"17-screen\"\nrect = { origin = [4, 1, 1], u = [0, 1, 0], v = [0, 0, 0.5] }\n";
+    let declared = "[declared]\nA = { ra = 80, flicker = { pulsation = 12 } }\n";
+    let text = room("sanpin-1.2.3685-21", &format!("row = \"15\"\n{DESK}{board}{declared}"));
+    let outcome = solved(&text);
+    let upright = of(&outcome, "Board", Statistic::Mean)[0];
+    assert_eq!((upright.quantity, upright.bound), (Quantity::Normal, Bound::Min(500.0)));
+    let flat = of(&outcome, "Flat", Statistic::Mean)[0];
+    assert_eq!(flat.verdict, Verdict::NotAssessed, "a board is upright");
+    let screen = of(&outcome, "Screen", Statistic::Mean)[0];
+    assert_eq!((screen.bound, screen.verdict), (Bound::Max(200.0), Verdict::Fail), "200 lx is a maximum");
+    assert!(of(&outcome, "surrounding area", Statistic::Mean).is_empty());
+    let pulsation: Vec<_> = outcome.requirements.iter().filter(|r| r.quantity.key() == "pulsation").collect();
+    assert!(pulsation.iter().any(|r| r.verdict == Verdict::Fail), "12 % declared, 10 % allowed");
+    let table = outcome.rooms[0].ugr_table.first().expect("a table");
+    assert!((table.shr - 1.0).abs() < 1e-9, "GOST 33392: spacing to height 1");
+    assert!(
+        outcome.plan.iter().any(|reason| reason.contains("names a plane at 0.80 m")),
+        "{:?}",
+        outcome.plan
+    );
+    // The norm's own areas: a plane at 0.8 m and nothing at walls or ceiling.
+    let outcome = solved(&room("sanpin-1.2.3685-21", "row = \"15\"\n"));
+    let areas = &outcome.rooms[0].areas;
+    assert_eq!(areas.iter().filter(|area| area.name.contains("working plane")).count(), 1);
+    assert!((areas[0].grid.points[0].position.z - 0.8).abs() < 1e-9);
+    assert!(areas.iter().all(|area| !area.name.contains("Wall") && !area.name.contains("ceiling")));
+    // A house norm that limits the minimum.
+    let house = "id = \"house\"\n[application]\nilluminance_statistic = { value = \"min\" }\n[[row]]\nref = \"1\"\nem = 100\nm = 40\n";
+    let folder =
+        folder(&room("house.toml", &format!("row = \"1\"\n{DESK}")), &[("house.toml".into(), house.into())]);
+    let outcome = projects::run_folder(folder.path(), 32, Effort::default());
+    assert_eq!(of(&outcome, "Desk", Statistic::Min)[0].bound, Bound::Min(100.0));
+    let m = outcome
+        .requirements
+        .iter()
+        .find(|r| r.quantity == Quantity::DiscomfortIndex)
+        .expect("M is asked for");
+    let ugr = outcome.rooms[0].ugr_table.iter().flat_map(|t| [&t.crosswise, &t.endwise]).flatten();
+    let worst = ugr.copied().fold(f64::NEG_INFINITY, f64::max);
+    let expected = 10f64.powf((worst + 4.8) / 16.0);
+    assert!((m.value.as_ref().expect("a value") - expected).abs() < 1e-9 * expected);
+}
+
+#[test]
+fn sports_have_odd_grids_and_a_total_area_that_is_compared_with_the_court() {
+    let court = "row = \"volleyball-III\"\n[[area]]\nname = \"Court\"\nrect = { origin = [1, 1, 0], u = [6, 0, 0], v = [0, 3, 0] }\n\
+                 [[area]]\nname = \"Total\"\nkind = \"surrounding\"\nof = \"Court\"\nrect = { origin = [0, 0, 0], u = [8, 0, 0], v = [0, 5, 0] }\n";
+    let outcome = solved(&room("en-12193-2018", court));
+    for area in &outcome.rooms[0].areas {
+        assert!(area.grid.columns % 2 == 1 && area.grid.rows % 2 == 1, "{}", area.name);
+    }
+    let share = of(&outcome, "Total", Statistic::OfTask)[0];
+    let mean = |area: &str| {
+        let points = projects::points(&outcome, area, "E_h", "all");
+        points.iter().map(|point| point.value).sum::<f64>() / points.len() as f64
+    };
+    let expected = mean("Total") / mean("Court");
+    let value = *share.value.as_ref().expect("a value");
+    assert!((value - expected).abs() < 1e-9 && share.lo_joint < value && value < share.hi_joint);
+    assert_eq!(share.bound, Bound::Min(0.75));
+}
+
+/// Catches: a zone of the wrong width, one that counts the task's own points, one that vanishes.
+#[test]
+fn a_norm_draws_its_zones_round_a_task() {
+    let zones = "[[area]]\nname = \"Around\"\nkind = \"surrounding\"\nof = \"Desk\"\n\
+                 [[area]]\nname = \"Beyond\"\nkind = \"background\"\nof = \"Desk\"\n";
+    let outcome = solved(&room("en-12464-1-2021", &format!("row = \"34.2\"\n{zones}{DESK}")));
+    let area =
+        |name: &str| outcome.rooms[0].areas.iter().find(|area| area.name == name).expect("it is there");
+    let size = |name: &str| [area(name).grid.edge_u.length(), area(name).grid.edge_v.length()];
+    let close = |found: [f64; 2], wanted: [f64; 2]| {
+        (found[0] - wanted[0]).abs() < 1e-9 && (found[1] - wanted[1]).abs() < 1e-9
+    };
+    assert!(close(size("Around"), [2.6, 1.8]), "{:?}", size("Around"));
+    // 3.5 m round a desk from (3, 2) to (4.6, 2.8): the walls cut it to 8 × 5 m.
+    assert!(close(size("Beyond"), [8.0, 5.0]), "{:?}", size("Beyond"));
+    let inside = |name: &str, lo: [f64; 2], hi: [f64; 2]| {
+        let points = area(name).grid.points.iter().filter(|point| point.excluded.is_none());
+        points
+            .filter(|p| {
+                p.position.x > lo[0] && p.position.x < hi[0] && p.position.y > lo[1] && p.position.y < hi[1]
+            })
+            .count()
+    };
+    assert_eq!(inside("Around", [3.0, 2.0], [4.6, 2.8]), 0, "the task's points are its own");
+    assert_eq!(inside("Beyond", [2.5, 1.5], [5.1, 3.3]), 0, "and so are the surrounding's");
+    assert_eq!(of(&outcome, "Around", Statistic::Mean)[0].bound, Bound::Min(300.0));
+    let Bound::Min(beyond) = of(&outcome, "Beyond", Statistic::Mean)[0].bound else { panic!("a minimum") };
+    assert!((beyond - 100.0).abs() < 1e-9);
+    // Norms without zones, and tasks that are not there, are told.
+    let no_zones = mistakes(&room("sanpin-1.2.3685-21", &format!("row = \"15\"\n{zones}{DESK}")));
+    assert!(no_zones.contains("no norm says how wide"), "{no_zones}");
+    let lost = mistakes(&room(
+        "en-12464-1-2021",
+        &format!("row = \"34.2\"\n{}{DESK}", zones.replace("\"Desk\"", "\"Desq\"")),
+    ));
+    assert!(lost.contains("no task area \"Desq\""), "{lost}");
+}
+
+/// Catches: a dimming factor from values instead of interval ends, one that another requirement
+/// forbids, one that is not the least.
+#[test]
+fn a_room_dimmed_as_far_as_is_said_still_complies_and_no_further() {
+    let desks = "[[require]]\narea = \"Desk\"\nquantity = \"E_h\"\nmin = 500\n[[require]]\narea = \"Desk\"\nquantity = \"E_cyl\"\nmin = 150\n\
+                 [[require]]\narea = \"Desk\"\nquantity = \"E_h\"\nstatistic = \"U0\"\nmin = 0.5\n";
+    let text = room("en-12464-1-2021", &format!("{DESK}{desks}"));
+    let solve =
+        |dim: f64| solved(&text.replace("height = 2.79 }", &format!("height = 2.79 }}\ndim = {dim}")));
+    let full = solve(1.0);
+    let dimming = full.rooms[0].dimming.clone().expect("illuminances are required");
+    assert!(dimming.factor < 0.9 && dimming.others_pass, "{dimming:?}");
+    assert_eq!(dimming.subject, "Desk");
+    let passes = |outcome: &Outcome| outcome.requirements.iter().all(|r| r.verdict == Verdict::Pass);
+    assert!(passes(&solve(dimming.factor * 1.000_001)));
+    assert!(!passes(&solve(dimming.factor * 0.97)), "3 % less must be noticed");
+    let without = room("en-12464-1-2021", DESK);
+    assert_eq!(solved(&without).rooms[0].dimming, None, "nothing is required");
+    assert_eq!(full.rooms[0].power, None, "a Lambertian luminaire has no power");
+}
+
+/// Exit code of `check` with arguments.
+fn exit(project: &Path, arguments: &[&str]) -> Option<i32> {
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gershun"));
+    command.arg("check").arg("-q").arg("--out").arg(out.path().join("report")).args(arguments).arg(project);
+    command.output().expect("the program starts").status.code()
+}
+
+#[test]
+fn a_script_chooses_what_undecided_means() {
+    // Two blocks leave a mean undecided between wide limits.
+    let text = room("en-12464-1-2021", DESK);
+    let points = projects::points(&run(&text, &[], 2, Effort::default()), "Desk", "E_h", "all");
+    let value = points.iter().map(|point| point.value).sum::<f64>() / points.len() as f64;
+    let limit = format!("{text}[[require]]\narea = \"Desk\"\nquantity = \"E_h\"\nmin = {}\n", value * 1.0001);
+    let outcome = run(&limit, &[], 2, Effort::default());
+    let own = outcome.requirements.iter().find(|r| r.standard == "project").expect("required");
+    let folder = folder(&limit, &[]);
+    let two = |policy: &str| exit(folder.path(), &["--blocks", "2", "--undecided", policy]);
+    if own.verdict == Verdict::Undecided {
+        assert!(own.blocks_needed.is_some_and(|blocks| blocks > 2));
+        assert_eq!([two("3"), two("fail"), two("pass")], [Some(3), Some(1), Some(0)]);
+    } else {
+        panic!("two blocks decided {own:?}");
+    }
+    // A requirement without a value is not nearly met: no policy lets it pass.
+    let dark = text.replace("[norm]\nstandard = \"en-12464-1-2021\"\n", "")
+        + "[[viewpoint]]\nname = \"Up\"\neye = [4, 2, 1.2]\ndirection = [0, 0, -1]\n[[require]]\nviewpoint = \"Up\"\nquantity = \"UGR\"\nmax = 19\n";
+    let folder = projects::folder(&dark, &[]);
+    assert_eq!(exit(folder.path(), &["--blocks", "32", "--undecided", "pass"]), Some(3));
+}
+
+#[test]
+fn every_row_of_every_norm_can_be_shown_and_explained() {
+    let gershun = |arguments: &[&str]| {
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_gershun")).args(arguments).output().expect("the program starts");
+        (output.status.code(), String::from_utf8(output.stdout).expect("UTF-8"), output.stderr)
+    };
+    let (code, list, _) = gershun(&["norm", "list"]);
+    assert_eq!(code, Some(0));
+    for line in list.lines() {
+        let name = line.split_whitespace().next().expect("a name");
+        let (code, rows, _) = gershun(&["norm", "show", name]);
+        assert_eq!(code, Some(0), "{name}");
+        let standard =
+            gershun::norm::bundled().iter().find(|(id, _)| *id == name).expect("listed norms are bundled");
+        let standard = gershun::norm::Standard::parse(standard.1, name).expect("parses");
+        for row in &standard.rows {
+            assert!(rows.contains(&format!("\n{}  {}", row.reference, row.area)), "{name} {}", row.reference);
+        }
+        // One row through the program, all through the library (see norm/explain.rs).
+        let last = &standard.rows[standard.rows.len() - 1].reference;
+        for command in ["show", "explain"] {
+            assert_eq!(gershun(&["norm", command, name, last]).0, Some(0), "{name} {last}");
+        }
+        assert_eq!(gershun(&["norm", "explain", name]).0, Some(0), "{name}");
+    }
+    let (code, _, errors) = gershun(&["norm", "show", "en-12464-1-2021", "34.22"]);
+    assert_eq!(code, Some(2));
+    assert!(String::from_utf8_lossy(&errors).contains("did you mean \"34.2\"?"));
+}

@@ -2,7 +2,7 @@
 //! that comes from solving (those of loading come with the project).
 
 use crate::emitters::Emitters;
-use crate::material::Bsdf;
+use crate::material::{Bsdf, Lobe};
 use crate::measure::{Answers, flux};
 use crate::outcome::{Bias, Requirement};
 use crate::project::World;
@@ -44,6 +44,25 @@ pub(crate) fn add(
             format!(
                 "{glowing} specular planes; images of luminaires by one reflection in them do count as glare sources"
             ),
+            Some(0.0),
+        );
+    }
+    let lobes = scene.mesh.surfaces.iter().filter_map(|s| scene.materials[s.material].bsdf.lobe());
+    let papers = lobes.clone().filter_map(|lobe| match lobe {
+        Lobe::PhongPaper(paper) => Some(paper.loss()),
+        Lobe::Phong(_) | Lobe::Ward(_) | Lobe::Ggx(_) => None,
+    });
+    if let Some(loss) = papers.reduce(f64::max) {
+        note(
+            "The lobe of phong_paper loses light at grazing incidence that a real surface reflects; `phong` does not.",
+            format!("{:.0} % of the reflectance `specular` under uniform light", 100.0 * loss),
+            None,
+        );
+    }
+    if lobes.count() > 0 {
+        note(
+            "Highlights of luminaires on glossy surfaces are part of the background, not glare sources.",
+            "observers' UGR reads low where one dazzles".into(),
             Some(0.0),
         );
     }

@@ -11,7 +11,7 @@ mod seen;
 
 use glam::{DMat3, DVec3};
 
-use crate::geometry::trace::Tracer;
+use crate::geometry::trace::{Hit, Tracer};
 use crate::luminaire::Luminaire;
 use crate::photometry::Opening;
 use crate::scene::Scene;
@@ -210,20 +210,53 @@ impl<'s> Emitters<'s> {
     ///
     /// L = I(C,γ)/(A |cos γ|): the same light that [`Emitters::arrival`] integrates.
     pub fn opening_along(&self, luminaire: usize, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
-        let entry = &self.scene.luminaires[luminaire];
-        let kind = &entry.kind;
-        let area_m2 = kind.opening.area_m2();
-        let into = entry.world_from_luminaire.transpose();
-        let (o, d) = (into * (origin - entry.position), into * direction);
-        let t = -o.z / d.z;
-        if !(area_m2 > 0.0 && t > 0.0 && t.is_finite()) {
+        let (luminance, arrival) = self.along(&self.sources[luminaire], origin, direction)?;
+        Some((luminance, arrival.distance_m))
+    }
+
+    /// [`Emitters::opening_along`] of a luminaire or an image, as if nothing stood between.
+    #[inline]
+    pub fn along(&self, source: &Source, origin: DVec3, direction: DVec3) -> Option<(f64, Arrival)> {
+        let into = source.world_from_luminaire.transpose();
+        let (o, d) = (into * (origin - source.position), into * direction);
+        let distance_m = -o.z / d.z;
+        if !(source.area_m2 > 0.0 && distance_m > 0.0 && distance_m.is_finite()) {
             return None;
         }
-        let at = o + d * t;
-        if !kind.opening.contains(at) {
+        if !source.opening.contains(o + d * distance_m) {
             return None;
         }
-        let intensity_cd = kind.distribution.intensity_along(-d) * entry.dim;
-        Some((intensity_cd / (area_m2 * d.z.abs()), t))
+        let distribution = &self.luminaire(source).kind.distribution;
+        let intensity_cd = distribution.intensity_along(-d) * source.dim;
+        let normal_lx = intensity_cd / (distance_m * distance_m);
+        Some((intensity_cd / (source.area_m2 * d.z.abs()), Arrival { direction, distance_m, normal_lx }))
+    }
+
+    /// Share of the light of an opening at `distance_m` that reaches the origin of a ray which meets
+    /// `hit` first: a luminaire's own body does not hide it.
+    pub fn uncovered(
+        &self,
+        luminaire: usize,
+        (origin, direction): (DVec3, DVec3),
+        distance_m: f64,
+        hit: Option<&Hit>,
+    ) -> f64 {
+        let tracer = &self.scene.tracer;
+        // The opening may lie *in* the surface that ends the ray.
+        let reach = distance_m - 2.0 * tracer.offset_m();
+        let Some(hit) = hit.filter(|hit| hit.distance_m <= reach) else { return 1.0 };
+        let body = &self.scene.luminaires[luminaire].body;
+        if body.contains(&tracer.surface(hit.triangle)) {
+            tracer.transmittance(origin, direction, reach, body)
+        } else {
+            0.0
+        }
+    }
+
+    /// Density in 1/sr, seen from the receiving point, with which [`Emitters::arrival`] draws the
+    /// direction of an arrival: d²/(A |cos γ|); infinite for points.
+    pub fn density(&self, source: &Source, arrival: &Arrival) -> f64 {
+        let cos = source.world_from_luminaire.z_axis.dot(arrival.direction).abs();
+        arrival.distance_m * arrival.distance_m / (source.area_m2 * cos)
     }
 }

@@ -208,13 +208,20 @@ impl Plan {
 fn explain(project: &Project, world: &World, plan: &mut Plan) {
     let points = plan.demand.receivers.len();
     let surfaces = world.scene.mesh.surfaces.iter().map(|s| &world.scene.materials[s.material].bsdf);
-    let specular = surfaces.filter(|bsdf| bsdf.specular(1.0).is_some()).count();
+    let specular = surfaces.clone().filter(|bsdf| bsdf.specular(1.0).is_some()).count();
+    let glossy = surfaces.filter(|bsdf| bsdf.lobe().is_some()).count();
     let mut say = |text: String| plan.reasons.push(text);
     say(format!(
         "{points} receivers and {} lines of sight ask for a stored field: light is solved once, then looked up.",
         plan.demand.rays.len()
     ));
-    say("Every surface stores one number a side: all scattering materials are diffuse, so their luminance has no direction.".into());
+    if glossy > 0 {
+        say(format!(
+            "Every scattering surface stores one number a side, the luminance of its diffuse part, which has no direction. The highlights of {glossy} glossy surfaces are not stored: their lobe is drawn at every look, luminaires in it by their openings as well."
+        ));
+    } else {
+        say("Every surface stores one number a side: all scattering materials are diffuse, so their luminance has no direction.".into());
+    }
     if specular > 0 {
         say(format!(
             "{specular} specular surfaces store nothing: rays are followed through them, and luminaires are imaged in their planes."

@@ -24,12 +24,19 @@ fn listed(outcome: &Outcome, words: &str) -> bool {
 fn what_a_run_leaves_out_stands_in_its_list() {
     let materials = "Wall_N = { mirror = 0.9 }\nWall_S = { mirror = 0.9 }\n\
                      Opal = { opal = { reflectance = 0.4, transmittance = 0.5 } }\n\
+                     Floor = { reflectance = 0.2, specular = 0.1, phong_paper = 20 }\n\
                      Lit = { emit = 100, reflectance = 0.3 }";
     let furniture = "[[furniture]]\nat = [0.5, 0.5, 0.1]\nsize = [0.4, 0.4, 0.5]\nmaterial = \"Opal\"\n\
                      [[furniture]]\nat = [4.0, 3.0, 0.1]\nsize = [0.4, 0.4, 0.5]\nmaterial = \"Lit\"";
     let met = project(materials, "point = { flux = 1000 }", furniture);
-    for words in ["two or more specular reflections", "Specular images", "Opal surfaces", "Luminous surfaces"]
-    {
+    for words in [
+        "two or more specular reflections",
+        "Specular images",
+        "Opal surfaces",
+        "Luminous surfaces",
+        "phong_paper",
+        "Highlights",
+    ] {
         assert!(listed(&met, words), "\"{words}\" is not listed: {:?}", met.biases);
     }
     // Facing mirrors of 0.9 carry much of a point's light by double reflections: the figure is measured.

@@ -5,10 +5,15 @@
 //!
 //! Walks survive each vertex with probability a (its albedo), to their end; the sum telescopes, so
 //! the mean is the truth whatever the field is (Kollig & Keller's idea with a stored control).
+//!
+//! Everything above is about *diffuse* luminance. Mirrors, panes and glossy lobes belong to the way
+//! from one diffuse place to the next: a look along a ray returns all places it leads to, each of
+//! weight 1 on average times what reflects it there, and the luminaires met or reflected on the way.
 
-use super::look::{Landing, add_direct, add_emission, follow};
-use super::{Counts, PARTS, Part, Prepared, Sheet, lifted};
-use crate::emitters::Arrival;
+use glam::DVec3;
+
+use super::look::{Landing, Sight, add_direct, add_emission, look};
+use super::{PARTS, Part, Prepared, Sheet, lifted};
 use crate::query::{Ray, Receiver};
 use crate::rng::{Rng, Stratified};
 use crate::sphere;
@@ -16,16 +21,23 @@ use crate::sphere;
 /// Steps after which a walk is cut and counted: only a sealed cavity without absorption gets here.
 const MOST_STEPS: u32 = 100_000;
 
+/// Lobe rays of gather rays and walks survive as often as their lobe reflects …
+const ANALOG: f64 = 1.0;
+/// … but lines of sight follow each lobe down to this weight: a highlight is what they ask for.
+const SIGHT: f64 = 0.02;
+
 /// Buffers reused from receiver to receiver.
 struct Desk {
     /// Luminance per channel seen by the current ray.
     seen: Vec<f64>,
     /// Residual of the current walk per channel.
     residual: Vec<f64>,
-    /// Openings met on the way.
-    met: Vec<f64>,
-    scratch: Vec<(usize, f64, Arrival, bool)>,
-    counts: Counts,
+    /// Openings and landings met on the way.
+    sight: Sight,
+    /// Places from which the current walk still has to go on.
+    pending: Vec<Landing>,
+    /// Where the walk goes on from its current place.
+    onward: Vec<Landing>,
 }
 
 /// Block `stream` of a `Links` solution.
@@ -36,10 +48,10 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
     let zero = vec![0.0; channels];
     let mut desk = Desk {
         seen: zero.clone(),
-        residual: zero.clone(),
-        met: zero,
-        scratch: Vec::new(),
-        counts: Counts::default(),
+        residual: zero,
+        sight: Sight::new(channels),
+        pending: Vec::new(),
+        onward: Vec::new(),
     };
     for (index, receiver) in demand.receivers.iter().enumerate() {
         let row = prepared.first_rows[index];
@@ -59,7 +71,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
             &mut values[row * channels * PARTS..(row + 1) * channels * PARTS],
         );
     }
-    Sheet { values, flux: None, counts: desk.counts }
+    Sheet { values, flux: None, counts: desk.sight.counts }
 }
 
 fn answer_receiver(
@@ -88,10 +100,10 @@ fn answer_receiver(
         if !(density > 0.0) {
             continue;
         }
-        let landing = look(prepared, origin, direction, rng, desk);
-        let walked = sample < walks && landing.is_some();
-        if let (true, Some(landing)) = (walked, landing) {
-            walk(prepared, landing, rng, desk);
+        see(prepared, origin, direction, ANALOG, rng, desk);
+        let walked = sample < walks && !desk.sight.landings.is_empty();
+        if walked {
+            walk(prepared, rng, desk);
         }
         for (k, kernel) in kernels.iter().enumerate() {
             let weight = kernel.response(direction) / density;
@@ -159,11 +171,8 @@ fn answer_ray(prepared: &Prepared, ray: &Ray, rng: &mut Rng, desk: &mut Desk, ou
     let samples = prepared.effort.gather;
     straight_openings(prepared, ray, out);
     for _ in 0..samples {
-        let landing = look(prepared, ray.point, ray.direction, rng, desk);
-        desk.residual.fill(0.0);
-        if let Some(landing) = landing {
-            walk(prepared, landing, rng, desk);
-        }
+        see(prepared, ray.point, ray.direction, SIGHT, rng, desk);
+        walk(prepared, rng, desk);
         for channel in 0..desk.seen.len() {
             let value = (desk.seen[channel] + desk.residual[channel]) / f64::from(samples);
             out[channel * PARTS + Part::Indirect as usize] += value;
@@ -197,11 +206,10 @@ pub(super) fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, s
         let hit = scene.tracer.closest(origin, direction, &[]);
         if reflections == 1 {
             for luminaire in 0..scene.luminaires.len() {
-                if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
-                    && distance_m - 2.0 * scene.tracer.offset_m()
-                        < hit.map_or(f64::INFINITY, |hit| hit.distance_m)
-                {
-                    out[scene.channel_of[luminaire] * PARTS + Part::Image as usize] += luminance * share;
+                if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction) {
+                    let passed = emitters.uncovered(luminaire, (origin, direction), distance_m, hit.as_ref());
+                    out[scene.channel_of[luminaire] * PARTS + Part::Image as usize] +=
+                        luminance * passed * share;
                 }
             }
         }
@@ -227,72 +235,78 @@ pub(super) fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, s
     }
 }
 
-/// Looks along a ray: fills `desk.seen` with the stored luminance there (emission included).
-fn look(
-    prepared: &Prepared,
-    origin: glam::DVec3,
-    direction: glam::DVec3,
-    rng: &mut Rng,
-    desk: &mut Desk,
-) -> Option<Landing> {
-    desk.met.fill(0.0);
-    let landing = follow(&prepared.emitters, origin, direction, rng, &mut desk.counts, &mut desk.met);
-    desk.seen.copy_from_slice(&desk.met);
-    if let Some(landing) = &landing {
-        add_emission(prepared.scene, landing.triangle, &mut desk.seen, 1.0);
+/// Looks along a ray: fills `desk.seen` with what is met and stored there (emission included).
+fn see(prepared: &Prepared, origin: DVec3, direction: DVec3, least: f64, rng: &mut Rng, desk: &mut Desk) {
+    look(&prepared.emitters, origin, direction, least, rng, &mut desk.sight);
+    desk.seen.copy_from_slice(&desk.sight.met);
+    for landing in &desk.sight.landings {
+        add_emission(prepared.scene, landing.triangle, &mut desk.seen, landing.weight);
         for (seen, stored) in desk.seen.iter_mut().zip(stored(prepared, landing)) {
-            *seen += stored;
+            *seen += landing.weight * stored;
         }
     }
-    landing
 }
 
-/// Walks from a landing to its end; fills `desk.residual` with Σ R_v. `desk.seen` is kept.
-fn walk(prepared: &Prepared, start: Landing, rng: &mut Rng, desk: &mut Desk) {
-    let scene = prepared.scene;
+/// Walks from the landings in `desk.sight` to the end; fills `desk.residual` with Σ R_v. Light places
+/// are walked from in proportion to their weight. `desk.seen` is kept.
+fn walk(prepared: &Prepared, rng: &mut Rng, desk: &mut Desk) {
     desk.residual.fill(0.0);
-    let mut here = start;
-    for _ in 0..MOST_STEPS {
-        let (reflectance, transmittance) = scene.bsdf(here.triangle).diffuse();
-        let albedo = reflectance + transmittance;
-        for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, &here)) {
-            *residual -= stored;
+    desk.pending.clear();
+    for landing in &desk.sight.landings {
+        if landing.weight >= 1.0 || rng.uniform() < landing.weight {
+            desk.pending.push(Landing { weight: landing.weight.max(1.0), ..*landing });
         }
-        if !(albedo > 0.0) {
-            return;
-        }
-        let effort = &prepared.effort;
-        add_direct(&prepared.emitters, &here, effort.shadow_rays, rng, &mut desk.scratch, &mut desk.residual);
-        let looks = effort.looks.max(1);
-        let share = albedo / f64::from(looks);
-        let mut onward = None;
-        for number in 0..looks {
-            let same_side = rng.uniform() * albedo < reflectance;
-            let facing = if same_side { here.normal } else { -here.normal };
-            let direction = sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms());
-            desk.met.fill(0.0);
-            let origin = here.origin(scene, same_side);
-            let next = follow(&prepared.emitters, origin, direction, rng, &mut desk.counts, &mut desk.met);
-            for (residual, met) in desk.residual.iter_mut().zip(&desk.met) {
-                *residual += share * met;
-            }
-            if let Some(next) = &next {
-                add_emission(scene, next.triangle, &mut desk.residual, share);
-                for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, next)) {
-                    *residual += share * stored;
-                }
-            }
-            if number == 0 {
-                onward = next;
-            }
-        }
-        let Some(next) = onward else { return };
-        if rng.uniform() >= albedo {
-            return;
-        }
-        here = next;
     }
-    desk.counts.cut += 1;
+    for _ in 0..MOST_STEPS {
+        let Some(here) = desk.pending.pop() else { return };
+        step(prepared, here, rng, desk);
+    }
+    desk.sight.counts.cut += 1;
+}
+
+/// One vertex of a walk: adds R = L_direct + a·(what is seen from here) − L̃(here), and decides where
+/// the walk goes on. A look that passed glossy surfaces may have landed more than once: it goes on
+/// from each place, which multiplies walks no faster than surfaces reflect.
+fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
+    let (scene, emitters, effort) = (prepared.scene, &prepared.emitters, &prepared.effort);
+    let (reflectance, transmittance) = scene.bsdf(here.triangle).diffuse();
+    let albedo = reflectance + transmittance;
+    if !(albedo > 0.0) {
+        return;
+    }
+    for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, &here)) {
+        *residual -= here.weight * stored;
+    }
+    desk.sight.met.fill(0.0);
+    add_direct(emitters, &here, effort.shadow_rays, rng, &mut desk.sight.scratch, &mut desk.sight.met);
+    for (residual, direct) in desk.residual.iter_mut().zip(&desk.sight.met) {
+        *residual += here.weight * direct;
+    }
+    let looks = effort.looks.max(1);
+    let share = here.weight * albedo / f64::from(looks);
+    desk.onward.clear();
+    for number in 0..looks {
+        let same_side = rng.uniform() * albedo < reflectance;
+        let facing = if same_side { here.normal } else { -here.normal };
+        let direction = sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms());
+        look(emitters, here.origin(scene, same_side), direction, ANALOG, rng, &mut desk.sight);
+        for (residual, met) in desk.residual.iter_mut().zip(&desk.sight.met) {
+            *residual += share * met;
+        }
+        for next in &desk.sight.landings {
+            add_emission(scene, next.triangle, &mut desk.residual, share * next.weight);
+            for (residual, stored) in desk.residual.iter_mut().zip(stored(prepared, next)) {
+                *residual += share * next.weight * stored;
+            }
+        }
+        if number == 0 {
+            desk.onward.extend_from_slice(&desk.sight.landings);
+        }
+    }
+    if !desk.onward.is_empty() && rng.uniform() < albedo {
+        let weighted = |next: &Landing| Landing { weight: here.weight * next.weight, ..*next };
+        desk.pending.extend(desk.onward.iter().map(weighted));
+    }
 }
 
 fn stored<'p>(prepared: &'p Prepared, landing: &Landing) -> &'p [f64] {

@@ -182,6 +182,12 @@ fn follow(
             tally.sheet.absorbed[slot] += tally.flux_lm;
             return;
         };
+        if next.weight > 1.0 {
+            // Some directions of a glossy lobe are drawn less often than they reflect: what the particle
+            // gains here it owes to those that were absorbed, so the balance stays exact.
+            tally.sheet.absorbed[slot] -= tally.flux_lm * (next.weight - 1.0);
+            tally.flux_lm *= next.weight;
+        }
         if next.specular && next.direction.z > 0.0 {
             reflections += 1;
             covered = reflections == 1 && prepared.emitters.imaged[hit.triangle as usize];

@@ -1,19 +1,47 @@
-//! Following a ray to the first diffuse surface through mirrors and panes, the light of luminaires
-//! met on the way, and direct light at a diffuse vertex.
+//! Looking along a ray: through mirrors and panes to the first surface that has a diffuse part, on
+//! along the lobes of glossy ones, and the light of luminaires met on the way. Direct light at a
+//! diffuse vertex.
 
 use glam::DVec3;
 
 use super::Counts;
-use crate::emitters::Emitters;
+use super::lobe::scatter;
+use crate::emitters::{Arrival, Emitters};
+use crate::geometry::trace::Hit;
 use crate::rng::Rng;
 use crate::scene::{Channel, Scene};
 
 /// Specular bounces after which a walk is cut and counted: only a cage of perfect mirrors gets here.
 const MOST_BOUNCES: u32 = 10_000;
 
-/// A diffuse place that a ray arrived at.
+/// What a look along a ray found: its luminance is `met` and the sum of weight times diffuse luminance
+/// (and emission) over the landings.
+#[derive(Debug, Default)]
+pub(super) struct Sight {
+    /// Luminance per channel of luminaires that next-event estimation at the ray's origin leaves out.
+    pub met: Vec<f64>,
+    /// Where the ray arrived; more than one only behind glossy surfaces.
+    pub landings: Vec<Landing>,
+    /// Rays traced so far.
+    pub counts: Counts,
+    /// Luminaires considered at one place: source, luminance, arrival, side.
+    pub scratch: Vec<(usize, f64, Arrival, bool)>,
+}
+
+impl Sight {
+    /// Nothing seen yet.
+    pub fn new(channels: usize) -> Self {
+        Self { met: vec![0.0; channels], ..Self::default() }
+    }
+}
+
+/// A place with a diffuse part that a ray arrived at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landing {
+    /// Share of its luminance that counts.
+    pub weight: f64,
+    /// Unit direction back along the ray.
+    pub to_eye: DVec3,
     /// Position on the surface, m.
     pub point: DVec3,
     /// Unit normal on the side of arrival.
@@ -34,17 +62,42 @@ impl Landing {
     }
 }
 
-/// Follows specular surfaces to a diffuse one. Reflection or transmission is drawn at random and
-/// absorption is analog, so a landing always has weight 1; `None` is light that is lost or absent.
-/// Openings met after specular reflections that no image covers add their luminance to `met`
-/// (cd/m² per channel): next-event estimation owns all others.
-pub(super) fn follow(
+/// Looks along a ray. At a glossy surface it lands *and*, as often as the lobe reflects, goes on:
+/// L = L_diffuse + L_lobe, the second estimated by [`scatter`]. Rays on lobes whose weight falls below
+/// `least` survive in proportion: with `least` = 1 they are as rare as their reflectance, with less
+/// they are more frequent and lighter.
+pub(super) fn look(
     emitters: &Emitters,
     origin: DVec3,
     direction: DVec3,
+    least: f64,
     rng: &mut Rng,
-    counts: &mut Counts,
-    met: &mut [f64],
+    sight: &mut Sight,
+) {
+    sight.met.fill(0.0);
+    sight.landings.clear();
+    let (mut origin, mut direction, mut weight) = (origin, direction, 1.0);
+    for _ in 0..MOST_BOUNCES {
+        let Some(landing) = follow(emitters, origin, direction, weight, rng, sight) else { return };
+        sight.landings.push(landing);
+        let Some(lobe) = emitters.scene.bsdf(landing.triangle).lobe() else { return };
+        let Some(onward) = scatter(emitters, lobe, &landing, least, rng, sight) else { return };
+        (origin, direction, weight) = (onward.origin, onward.direction, onward.weight);
+    }
+    sight.counts.cut += 1;
+}
+
+/// Follows specular surfaces to one that is not. Reflection or transmission is drawn at random and
+/// absorption is analog, so the weight never changes; `None` is light that is lost or absent.
+/// Openings met after specular reflections that no image covers add their luminance to `met`
+/// (cd/m² per channel): what was done at the ray's origin owns all others.
+fn follow(
+    emitters: &Emitters,
+    origin: DVec3,
+    direction: DVec3,
+    weight: f64,
+    rng: &mut Rng,
+    Sight { met, counts, .. }: &mut Sight,
 ) -> Option<Landing> {
     let scene = emitters.scene;
     let (mut origin, mut direction) = (origin, direction);
@@ -54,7 +107,7 @@ pub(super) fn follow(
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if !owned {
-            add_openings(emitters, origin, direction, hit.map_or(f64::INFINITY, |hit| hit.distance_m), met);
+            add_openings(emitters, (origin, direction), hit.as_ref(), weight, met);
         }
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -66,6 +119,8 @@ pub(super) fn follow(
         let cos = -direction.dot(normal);
         let Some((reflected, passed)) = scene.bsdf(hit.triangle).specular(cos) else {
             return Some(Landing {
+                weight,
+                to_eye: -direction,
                 point,
                 normal,
                 triangle: hit.triangle,
@@ -90,14 +145,12 @@ pub(super) fn follow(
     None
 }
 
-/// Adds the luminance of every opening along a ray before `reach_m`.
-fn add_openings(emitters: &Emitters, origin: DVec3, direction: DVec3, reach_m: f64, met: &mut [f64]) {
+/// Adds the luminance of every opening along a ray before what it meets.
+fn add_openings(emitters: &Emitters, ray: (DVec3, DVec3), hit: Option<&Hit>, weight: f64, met: &mut [f64]) {
     for luminaire in 0..emitters.scene.luminaires.len() {
-        if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
-            && distance_m - 2.0 * emitters.scene.tracer.offset_m() < reach_m
-        {
-            // The opening may lie *in* the surface that ends the ray.
-            met[emitters.scene.channel_of[luminaire]] += luminance;
+        if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, ray.0, ray.1) {
+            met[emitters.scene.channel_of[luminaire]] +=
+                weight * luminance * emitters.uncovered(luminaire, ray, distance_m, hit);
         }
     }
 }
@@ -121,7 +174,7 @@ pub(super) fn add_direct(
     landing: &Landing,
     shadow_rays: f64,
     rng: &mut Rng,
-    scratch: &mut Vec<(usize, f64, crate::emitters::Arrival, bool)>,
+    scratch: &mut Vec<(usize, f64, Arrival, bool)>,
     channels: &mut [f64],
 ) {
     let scene = emitters.scene;

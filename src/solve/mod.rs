@@ -5,6 +5,7 @@ mod answer;
 mod chains;
 mod double;
 mod flux;
+mod lobe;
 mod local;
 mod look;
 mod path;

@@ -1,10 +1,12 @@
 //! An independent check: plain path tracing from every receiver with next-event estimation of one
-//! luminaire at random, Russian roulette, and no stored field, no images, no splitting. It shares
-//! scene, tracer and response kernels with the links method and nothing else.
+//! luminaire at random (at glossy surfaces weighted with hits of openings), Russian roulette, and no
+//! stored field, no images, no splitting. It shares scene, tracer, scattering models and response
+//! kernels with the links method and nothing else.
 
 use glam::DVec3;
 
 use super::{Counts, PARTS, Part, Prepared, Sheet, lifted};
+use crate::geometry::trace::Hit;
 use crate::query::{Kernel, Ray};
 use crate::rng::Rng;
 use crate::scene::{Channel, Scene};
@@ -50,17 +52,23 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
 
 /// One luminaire at random, one point of its opening, straight or through panes.
 fn lamp_light(scene: &Scene, at: DVec3, kernel: &Kernel, weight: f64, rng: &mut Rng, out: &mut [f64]) {
-    if let Some((lx, direction, channel)) = one_lamp(scene, rng, |_| at) {
-        out[channel * PARTS + Part::Direct as usize] += lx * kernel.response(direction) * weight;
+    if let Some(lit) = one_lamp(scene, rng, |_| at) {
+        out[lit.channel * PARTS + Part::Direct as usize] += lit.lx * kernel.response(lit.direction) * weight;
     }
 }
 
-/// Normal illuminance from a random luminaire (times their number), its direction and channel.
-fn one_lamp(
-    scene: &Scene,
-    rng: &mut Rng,
-    origin_towards: impl Fn(DVec3) -> DVec3,
-) -> Option<(f64, DVec3, usize)> {
+/// Light of one luminaire chosen at random.
+struct Lit {
+    /// Normal illuminance times the number of luminaires, lx.
+    lx: f64,
+    direction: DVec3,
+    channel: usize,
+    /// Density in 1/sr with which this direction was chosen; infinite for a point.
+    density: f64,
+}
+
+/// A point on the opening of a random luminaire.
+fn one_lamp(scene: &Scene, rng: &mut Rng, origin_towards: impl Fn(DVec3) -> DVec3) -> Option<Lit> {
     let count = scene.luminaires.len();
     if count == 0 {
         return None;
@@ -79,7 +87,29 @@ fn one_lamp(
     let reach = distance_m - 2.0 * scene.tracer.offset_m();
     let passed = scene.tracer.transmittance(at, direction, reach, &lamp.body);
     let lx = intensity_cd / (distance_m * distance_m) * passed * count as f64;
-    Some((lx, direction, scene.channel_of[chosen]))
+    let density = distance_m * distance_m / (lamp.kind.opening.area_m2() * local.z.abs()) / count as f64;
+    Some(Lit { lx, direction, channel: scene.channel_of[chosen], density })
+}
+
+/// Luminance of the luminaires that a ray from a glossy surface meets straight or through panes,
+/// shared with [`one_lamp`], which finds the same light: the density of each over the sum of both.
+fn glossy_lamps(scene: &Scene, origin: DVec3, direction: DVec3, density: f64, weight: f64, out: &mut [f64]) {
+    let count = scene.luminaires.len() as f64;
+    for (index, lamp) in scene.luminaires.iter().enumerate() {
+        let area_m2 = lamp.kind.opening.area_m2();
+        let into = lamp.world_from_luminaire.transpose();
+        let (o, d) = (into * (origin - lamp.position), into * direction);
+        let t = -o.z / d.z;
+        if !(area_m2 > 0.0 && t > 0.0 && t.is_finite() && lamp.kind.opening.contains(o + d * t)) {
+            continue;
+        }
+        let reach = t - 2.0 * scene.tracer.offset_m();
+        let passed = scene.tracer.transmittance(origin, direction, reach, &lamp.body);
+        let luminance = lamp.kind.distribution.intensity_along(-d) * lamp.dim / (area_m2 * d.z.abs());
+        let by_lamp = t * t / (area_m2 * d.z.abs()) / count;
+        out[scene.channel_of[index] * PARTS + Part::Indirect as usize] +=
+            weight * luminance * passed * density / (density + by_lamp);
+    }
 }
 
 /// Follows one path. `sees_lamps`: the ray comes from an eye or a reflection, so openings count.
@@ -101,13 +131,12 @@ fn trace(
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if sees_lamps {
-            let reach = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
             let part = match (diffuse_seen, reflected_once) {
                 (false, false) => Part::Direct,
                 (false, true) => Part::Image,
                 (true, _) => Part::Indirect,
             };
-            add_lamps(scene, origin, direction, reach, weight, part, out);
+            add_lamps(scene, origin, direction, hit.as_ref(), weight, part, out);
         }
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -120,16 +149,31 @@ fn trace(
         let bsdf = scene.bsdf(hit.triangle);
         add_glow(scene, hit.triangle, weight, out);
         let frame = sphere::frame(normal);
-        let Some(next) = bsdf.sample(frame.transpose() * -direction, rng.uniforms()) else { return };
-        if !next.specular {
+        let to_eye = frame.transpose() * -direction;
+        let next = bsdf.sample(to_eye, rng.uniforms());
+        if bsdf.specular(to_eye.z).is_none() {
             diffuse_seen = true;
             let side = |from: DVec3| point + normal * lift * (from - point).dot(normal).signum();
-            if let Some((lx, towards, channel)) = one_lamp(scene, rng, side) {
-                let local = frame.transpose() * towards;
-                let value = bsdf.f(local, DVec3::Z) * local.z.abs() * lx * weight;
-                out[channel * PARTS + Part::Indirect as usize] += value;
+            if let Some(lit) = one_lamp(scene, rng, side) {
+                let local = frame.transpose() * lit.direction;
+                let share = match bsdf.lobe() {
+                    Some(_) if lit.density.is_finite() => {
+                        lit.density / (lit.density + bsdf.pdf(local, to_eye))
+                    }
+                    _ => 1.0,
+                };
+                let value = bsdf.f(local, to_eye) * local.z.abs() * lit.lx * weight * share;
+                out[lit.channel * PARTS + Part::Indirect as usize] += value;
             }
+        }
+        let Some(next) = next else { return };
+        if !next.specular {
             sees_lamps = false;
+            if bsdf.lobe().is_some() {
+                let density = bsdf.pdf(next.direction, to_eye);
+                let (origin, towards) = (point + normal * lift, frame * next.direction);
+                glossy_lamps(scene, origin, towards, density, weight * next.weight, out);
+            }
         } else if next.direction.z > 0.0 {
             sees_lamps = true;
             reflected_once = true;
@@ -149,7 +193,7 @@ fn add_lamps(
     scene: &Scene,
     origin: DVec3,
     direction: DVec3,
-    reach: f64,
+    hit: Option<&Hit>,
     weight: f64,
     part: Part,
     out: &mut [f64],
@@ -159,12 +203,19 @@ fn add_lamps(
         let into = lamp.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - lamp.position), into * direction);
         let t = -o.z / d.z;
-        // The opening may lie *in* the surface that ends the ray.
-        let before = t - 2.0 * scene.tracer.offset_m() < reach;
-        if area_m2 > 0.0 && t > 0.0 && before && lamp.kind.opening.contains(o + d * t) {
+        if area_m2 > 0.0 && t > 0.0 && lamp.kind.opening.contains(o + d * t) {
+            // The opening may lie *in* the surface that ends the ray; its own body does not hide it.
+            let reach = t - 2.0 * scene.tracer.offset_m();
+            let passed = match hit {
+                Some(hit) if hit.distance_m < reach => {
+                    let own = lamp.body.contains(&scene.tracer.surface(hit.triangle));
+                    if own { scene.tracer.transmittance(origin, direction, reach, &lamp.body) } else { 0.0 }
+                }
+                _ => 1.0,
+            };
             let intensity_cd = lamp.kind.distribution.intensity_along(-d) * lamp.dim;
             out[scene.channel_of[index] * PARTS + part as usize] +=
-                weight * intensity_cd / (area_m2 * d.z.abs());
+                weight * intensity_cd / (area_m2 * d.z.abs()) * passed;
         }
     }
 }

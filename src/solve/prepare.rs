@@ -4,8 +4,8 @@
 
 use rayon::prelude::*;
 
-use super::look::{Landing, add_direct, add_emission, follow};
-use super::{Counts, Effort};
+use super::Effort;
+use super::look::{Landing, Sight, add_direct, add_emission, look};
 use crate::emitters::Emitters;
 use crate::field::{LuminanceField, Patches};
 use crate::rng::{Rng, Stratified};
@@ -22,13 +22,12 @@ const MOST_SWEEPS: u32 = 100;
 /// Every so many sweeps the field is scaled to balance: at a reflectance near 1 a sweep brings all
 /// places nearer by a thousandth of what they still lack.
 const BALANCED: u32 = 8;
-const NOWHERE: u32 = u32::MAX;
 
 /// What one patch side receives.
 struct Collected {
     /// Luminance that direct light and emitting surfaces make here, per channel.
     first: Vec<f64>,
-    /// Where its links end: patch sides, or `NOWHERE`.
+    /// Patch sides where its links end.
     links: Vec<u32>,
 }
 
@@ -51,7 +50,7 @@ pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> Luminanc
     for (side, entry) in collected.iter().enumerate() {
         field.at_mut(side).copy_from_slice(&entry.first);
     }
-    sweep(emitters, &mut field, &collected);
+    sweep(emitters, effort, &mut field, &collected);
     field
 }
 
@@ -61,8 +60,7 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
     let triangle = patches.triangle(side);
     let (reflectance, transmittance) = scene.bsdf(triangle).diffuse();
     let mut first = vec![0.0; channels];
-    let mut scratch = Vec::new();
-    let mut counts = Counts::default();
+    let mut sight = Sight::new(channels);
     let total = reflectance + transmittance;
     if !(total > 0.0) {
         return Collected { first, links: Vec::new() };
@@ -71,12 +69,13 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
         let place = patches.place(&scene.mesh, side, u);
         let front = side.is_multiple_of(2);
         let normal = if front { place.normal } else { -place.normal };
-        Landing { point: place.point, normal, triangle, barycentric: [0.0; 2], front }
+        let barycentric = [0.0; 2];
+        Landing { weight: 1.0, to_eye: normal, point: place.point, normal, triangle, barycentric, front }
     };
     let sequence = Stratified::new(rng);
     for sample in 0..DIRECT_SAMPLES {
         let at = landing(sequence.point(sample, rng));
-        add_direct(emitters, &at, f64::INFINITY, rng, &mut scratch, &mut first);
+        add_direct(emitters, &at, f64::INFINITY, rng, &mut sight.scratch, &mut first);
     }
     for value in &mut first {
         *value /= f64::from(DIRECT_SAMPLES);
@@ -91,11 +90,15 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
         let same_side = choice * total < reflectance;
         let facing = if same_side { at.normal } else { -at.normal };
         let direction = sphere::frame(facing) * sphere::cosine_hemisphere([u, v]);
-        let landed = follow(emitters, at.origin(scene, same_side), direction, rng, &mut counts, &mut met);
-        links.push(landed.map_or(NOWHERE, |l| {
-            add_emission(scene, l.triangle, &mut met, 1.0);
-            patches.side_at(l.triangle, l.barycentric, l.front) as u32
-        }));
+        look(emitters, at.origin(scene, same_side), direction, 1.0, rng, &mut sight);
+        for (sum, value) in met.iter_mut().zip(&sight.met) {
+            *sum += value;
+        }
+        // A link through a glossy surface ends on its diffuse part and once more where its lobe leads.
+        for landing in &sight.landings {
+            add_emission(scene, landing.triangle, &mut met, landing.weight);
+            links.push(patches.side_at(landing.triangle, landing.barycentric, landing.front) as u32);
+        }
     }
     for (value, met) in first.iter_mut().zip(&met) {
         *value += met * total / f64::from(effort.links.max(1));
@@ -104,15 +107,13 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
 }
 
 /// L(side) = first + (ρ + τ)/n Σ L(link), in place, in a fixed order.
-fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: &[Collected]) {
+fn sweep(emitters: &Emitters, effort: &Effort, field: &mut LuminanceField, collected: &[Collected]) {
     let scene = emitters.scene;
     let channels = scene.channels.len();
-    let factor: Vec<f64> = collected
-        .iter()
-        .enumerate()
-        .map(|(side, entry)| {
+    let factor: Vec<f64> = (0..collected.len())
+        .map(|side| {
             let (reflectance, transmittance) = scene.bsdf(field.patches().triangle(side)).diffuse();
-            (reflectance + transmittance) / entry.links.len().max(1) as f64
+            (reflectance + transmittance) / f64::from(effort.links.max(1))
         })
         .collect();
     let mut sums = vec![0.0; channels];
@@ -126,7 +127,7 @@ fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: &[Collected
                 continue;
             }
             sums.fill(0.0);
-            for &link in entry.links.iter().filter(|&&link| link != NOWHERE) {
+            for &link in &entry.links {
                 for (sum, value) in sums.iter_mut().zip(field.at(link as usize)) {
                     *sum += value;
                 }
@@ -153,8 +154,7 @@ fn balance(field: &mut LuminanceField, collected: &[Collected], factor: &[f64]) 
     for channel in 0..channels {
         let (mut fed, mut lost) = (0.0, 0.0);
         for (side, entry) in collected.iter().enumerate() {
-            let links = entry.links.iter().filter(|&&link| link != NOWHERE);
-            let sum: f64 = links.map(|&link| field.at(link as usize)[channel]).sum();
+            let sum: f64 = entry.links.iter().map(|&link| field.at(link as usize)[channel]).sum();
             let area = field.patches().area_m2(side);
             fed += area * entry.first[channel];
             lost += area * (field.at(side)[channel] - factor[side] * sum);

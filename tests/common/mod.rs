@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use gershun::geometry::mesh::Mesh;
 use gershun::luminaire::{Luminaire, LuminaireType, Maintenance, orientation};
-use gershun::material::{Bsdf, Material, Pane};
+use gershun::material::{Bsdf, Lobe, Material, Pane, Phong, PhongPaper, Ward};
 use gershun::photometry::{IntensityDistribution, Opening};
 use gershun::query::{Demand, Kernel, Receiver};
 use gershun::scene::Scene;
@@ -162,5 +162,54 @@ pub fn furnished() -> Scene {
     let mut uplight = lamp(IntensityDistribution::isotropic(Lumens(1500.0)), disc, DVec3::new(3.0, 2.0, 2.2));
     uplight.group = "B".into();
     lamps.push(uplight);
+    Scene::new(mesh, materials, lamps).expect("the scene is valid")
+}
+
+pub fn glossy(name: &str, reflectance: f64, lobe: Lobe) -> Material {
+    Material { name: name.into(), bsdf: Bsdf::Glossy { reflectance, lobe } }
+}
+
+/// The furnished room with every kind of glossy surface; `diffuse` and `lobe` multiply reflectances.
+/// With `downlights`, small bright discs and a point replace the panels, and dull sheets mirror and
+/// pane: by their reflection the path tracer finds small lamps too rarely, and points never.
+pub fn glossy_room([diffuse, lobe]: [f64; 2], downlights: bool) -> Scene {
+    let Scene { mut mesh, mut materials, luminaires: mut lamps, .. } = furnished();
+    let rho = |reflectance: f64| reflectance * diffuse;
+    materials[0] = glossy("floor", rho(0.25), Lobe::Phong(Phong::new(0.3 * lobe, 60.0)));
+    materials[1] = lambert("walls", rho(0.5));
+    materials[2] = lambert("ceiling", rho(0.7));
+    materials[3] = glossy("desk", rho(0.3), Lobe::Ward(Ward::new(0.2 * lobe, 0.12)));
+    materials
+        .push(Material { name: "cabinet".into(), bsdf: Bsdf::metallic_roughness(0.6 * diffuse, 0.5, 0.4) });
+    materials.push(glossy("paper", rho(0.4), Lobe::PhongPaper(PhongPaper::new(0.3 * lobe, 20.0))));
+    materials.push(glossy("sharp", rho(0.1), Lobe::Phong(Phong::new(0.4 * lobe, 3000.0))));
+    for surface in &mut mesh.surfaces {
+        match surface.name.as_str() {
+            "Wall_N" => surface.material = 8,
+            "desk 1" => surface.material = 9,
+            name if name.starts_with("cabinet") => surface.material = 7,
+            _ => {}
+        }
+    }
+    let housing = mesh.add_surface("housing", 1, true);
+    let (a, b, z) = (1.3, 1.7, 2.70);
+    let corners = [[a, a, z], [b, a, z], [b, b, z], [a, b, z]];
+    mesh.add_quad(corners.map(DVec3::from_array), housing);
+    if downlights {
+        materials[4] = lambert("no mirror", rho(0.3));
+        materials[5] = lambert("no pane", rho(0.3));
+        let disc = |diameter_m| Opening::Disc { diameter_m, height_m: 0.0 };
+        lamps = [[1.5, 1.5], [3.0, 1.2], [4.5, 1.4], [1.5, 3.0], [3.1, 2.9], [4.6, 3.1]]
+            .into_iter()
+            .map(|[x, y]| {
+                let distribution = IntensityDistribution::lambert(Lumens(1200.0));
+                lamp(distribution, disc(0.12), DVec3::new(x, y, 2.78))
+            })
+            .collect();
+        let mut bulb = point_lamp(800.0, DVec3::new(5.2, 0.8, 2.2));
+        bulb.group = "B".into();
+        lamps.push(bulb);
+    }
+    lamps[0].body = vec![housing];
     Scene::new(mesh, materials, lamps).expect("the scene is valid")
 }

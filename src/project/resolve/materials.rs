@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::material::{Bsdf, Material, Pane};
+use crate::material::{Bsdf, Lobe, Material, Pane, Phong, PhongPaper, Ward};
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
 use crate::project::schema::{At, File, MaterialSection};
@@ -25,6 +25,7 @@ struct Entry {
 
 /// What [`Palette::find`] found.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, while a project is read")]
 pub enum Lookup {
     /// No such entry.
     Absent,
@@ -98,20 +99,26 @@ pub fn lambert(name: &str, reflectance: f64) -> Material {
     Material { name: name.to_owned(), bsdf: Bsdf::Lambert { reflectance } }
 }
 
-/// Diffuse or total reflectance that counts for a room's means; `None` for panes.
+/// Exponents of a Phong lobe: below 1 it is no highlight, above the largest it is a mirror.
+const EXPONENTS: [f64; 2] = [1.0, 1e6];
+/// Roughness α of Ward's lobe: from almost a mirror to almost diffuse.
+const ROUGHNESSES: [f64; 2] = [0.001, 1.0];
+
+/// Diffuse or total reflectance that counts for a room's means; `None` for panes. Of a glossy surface
+/// it is that at normal incidence.
 pub fn mean_reflectance(bsdf: &Bsdf) -> Option<f64> {
     match *bsdf {
         Bsdf::Lambert { reflectance }
         | Bsdf::Mirror { reflectance }
         | Bsdf::Emitter { reflectance, .. }
         | Bsdf::Opal { reflectance, .. } => Some(reflectance),
+        Bsdf::Glossy { .. } => Some(bsdf.albedo(1.0)),
         Bsdf::Glass(_) => None,
     }
 }
 
 fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
-    let MaterialSection { reflectance, specular, phong, phong_paper, ward, mirror, glass, opal, emit } =
-        section.get_ref();
+    let MaterialSection { reflectance, specular, mirror, glass, opal, emit, .. } = section.get_ref();
     let before = context.diagnostics.len();
     let whole = section.span();
     for (value, name) in
@@ -128,13 +135,7 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
             context.error(&specular.span(), message, "");
         }
     }
-    if let Some(glossy) = [specular, phong, phong_paper, ward].into_iter().flatten().next() {
-        context.error(
-            &glossy.span(),
-            "glossy reflection is not supported yet",
-            "give the total as `reflectance`",
-        );
-    }
+    let lobe = lobe(section.get_ref(), context);
     if let Some(emit) = emit {
         context.in_range(emit, 0.0, f64::INFINITY, "emit");
     }
@@ -150,6 +151,26 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
     }
     if context.diagnostics.len() > before {
         return None;
+    }
+    if let Some(lobe) = lobe {
+        let alone = [mirror, glass, emit].into_iter().flatten().next().map(At::span);
+        if let Some(span) = alone.or(opal.as_ref().map(At::span)) {
+            context.error(
+                &span,
+                "a glossy lobe goes with `reflectance` only",
+                "leave out specular and its lobe, or this",
+            );
+            return None;
+        }
+        let Some(reflectance) = reflectance else {
+            context.missing(
+                &whole,
+                "a glossy surface needs the reflectance of its diffuse part",
+                "reflectance = 0 for a bare metal",
+            );
+            return None;
+        };
+        return Some(Bsdf::Glossy { reflectance: *reflectance.get_ref(), lobe });
     }
     match (reflectance, mirror, glass, opal, emit) {
         (Some(reflectance), None, None, None, None) => {
@@ -174,4 +195,54 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
             None
         }
     }
+}
+
+/// The lobe of `specular` with exactly one of `phong`, `phong_paper` and `ward`.
+fn lobe(section: &MaterialSection, context: &mut Context) -> Option<Lobe> {
+    let MaterialSection { specular, phong, phong_paper, ward, .. } = section;
+    let mut shapes = [phong, phong_paper, ward].into_iter().flatten();
+    let (specular, shape) = match (specular, shapes.next()) {
+        (None, None) => return None,
+        (Some(specular), None) => {
+            context.error(
+                &specular.span(),
+                "`specular` without the shape of its lobe",
+                "add `phong = 60` (exponent) or `ward = 0.12` (roughness); a perfect mirror is { mirror = … }",
+            );
+            return None;
+        }
+        (None, Some(shape)) => {
+            context.error(
+                &shape.span(),
+                "a glossy lobe without its reflectance",
+                "add `specular = 0.05`; `reflectance` is the diffuse part",
+            );
+            return None;
+        }
+        (Some(specular), Some(shape)) => (*specular.get_ref(), shape),
+    };
+    if let Some(second) = shapes.next() {
+        let hint = "keep one of phong, phong_paper and ward";
+        context.error(&second.span(), "a surface has one glossy lobe", hint);
+        return None;
+    }
+    let value = *shape.get_ref();
+    let ([low, high], what) =
+        if ward.is_some() { (ROUGHNESSES, "roughness of ward") } else { (EXPONENTS, "exponent of phong") };
+    if !(low..=high).contains(&value) {
+        let message = format!("{what} must lie in {low} … {high}, found {value}");
+        let sharp = if ward.is_some() { value < low } else { value > high };
+        let hint =
+            if sharp { "a sharper surface is { mirror = … }" } else { "a duller surface is diffuse" };
+        context.error(&shape.span(), message, hint);
+        return None;
+    }
+    if !(0.0..=1.0).contains(&specular) {
+        return None;
+    }
+    Some(match (phong, phong_paper) {
+        (Some(_), _) => Lobe::Phong(Phong::new(specular, value)),
+        (None, Some(_)) => Lobe::PhongPaper(PhongPaper::new(specular, value)),
+        (None, None) => Lobe::Ward(Ward::new(specular, value)),
+    })
 }

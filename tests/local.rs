@@ -181,3 +181,32 @@ fn the_bounded_kernel_tames_corners() {
     let difference = (plain[1].value - bounded[1].value) / plain[1].se.hypot(bounded[1].se);
     assert!(difference.abs() < 5.0, "both are unbiased away from surfaces: {difference}");
 }
+
+/// Catches: light that passes a luminaire's body and is reflected by it as well. A white plate under a
+/// point source, black all round: a receiver above that looks down sees it only if it is no body.
+#[test]
+fn a_body_does_not_reflect_the_light_that_it_lets_pass() {
+    let scene = |body: bool| {
+        let mut mesh = room(DVec3::splat(4.0));
+        let plate = mesh.add_surface("plate", 3, true);
+        let corners = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]];
+        mesh.add_quad(corners.map(|[x, y]| DVec3::new(x, y, 1.5)), plate);
+        let black = ["floor", "walls", "ceiling"].map(|name| lambert(name, 0.0));
+        let materials = black.into_iter().chain([lambert("plate", 0.9)]).collect();
+        let mut lamp = point_lamp(1000.0, DVec3::splat(2.0));
+        lamp.body = if body { vec![plate] } else { Vec::new() };
+        Scene::new(mesh, materials, vec![lamp]).expect("the scene is valid")
+    };
+    let demand =
+        Demand { receivers: vec![planar(DVec3::new(2.0, 2.0, 3.0), -DVec3::Z)], ..Demand::default() };
+    let value = |scene: &Scene, method| {
+        let sheets = sheets(scene, &demand, method, Effort::default(), 1, 64);
+        Estimate::from_blocks(&row(&sheets, 0, 1)).value - 1000.0 / (4.0 * std::f64::consts::PI)
+    };
+    for method in [Method::Links, Method::Path, Method::Local, Method::Double] {
+        let (with, without) = (value(&scene(true), method), value(&scene(false), method));
+        println!("{method:?}: {with:.3} lx from the body, {without:.3} lx from a mere plate");
+        assert!(with.abs() < 1e-4, "{method:?}: {with} lx are reflected by the body");
+        assert!(without > 10.0, "{method:?}: a plate must reflect: {without}");
+    }
+}

@@ -123,6 +123,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         run
     };
+    report(seeds, &names, &wanted, &one)
+}
+
+/// Runs every method over all seeds and writes what came of it.
+fn report(
+    seeds: u64,
+    names: &[&str],
+    wanted: &[String],
+    one: &(dyn Fn(Method, Effort, u64) -> Run + Sync),
+) -> Result<(), Box<dyn Error>> {
     let mut csv =
         String::from("method,quantity,seeds,truth,sd_of_runs,mean_half_width,covered_percent,z_to_links\n");
     let mut table = String::new();

@@ -109,11 +109,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for (source, rho, radius, chains, most) in [
-        (0.5, [0.5, 0.5], 30.0, 64, [32_768, 32_768, 32_768]),
-        (0.5, [0.8, 0.2], 30.0, 64, [32_768, 32_768, 32_768]),
-        (0.01, [0.5, 0.5], 30.0, 64, [32_768, 32_768, 32_768]),
-        (0.5, [0.99, 0.99], 120.0, 16, [2048, 4096, 8192]),
-        (0.5, [0.999, 0.999], 500.0, 4, [128, 2048, 2048]),
+        (0.5, [0.5, 0.5], 30.0, 64, [8192, 16_384, 8192]),
+        (0.5, [0.8, 0.2], 30.0, 64, [8192, 16_384, 8192]),
+        (0.01, [0.5, 0.5], 30.0, 64, [8192, 16_384, 8192]),
+        (0.5, [0.99, 0.99], 120.0, 16, [512, 1024, 1024]),
+        (0.5, [0.999, 0.999], 500.0, 4, [64, 256, 256]),
     ] {
         let plates = Plates { source, rho };
         let distances = [0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0];
@@ -133,7 +133,7 @@ fn cases() -> Vec<Case> {
         let scene = sphere.scene();
         let receivers = sphere.receivers(&scene);
         let places = (1..=receivers.len()).map(|k| format!("triangle {k}")).collect();
-        let most = if rho > 0.98 { [128, 2048, 2048] } else { [1024, 8192, 8192] };
+        let most = if rho > 0.98 { [64, 256, 256] } else { [1024, 8192, 2048] };
         let chains = if rho > 0.98 { 16 } else { 64 };
         cases.push(Case {
             name: format!("sphere, ρ {rho}"),
@@ -188,7 +188,7 @@ fn rooms() -> Vec<Case> {
                 receivers: receivers.into_iter().zip(expected).collect(),
                 places: places.map(|place| format!("\"{place}\"")).to_vec(),
                 truth: 5e-5,
-                most: [8192; 3],
+                most: [2048, 8192, 8192],
                 chains: 64,
             }
         })

@@ -93,13 +93,14 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         rule: GridRule::Count([5, 3]),
         border_m: 0.0,
         quantities: vec![Quantity::Horizontal, Quantity::Cylindrical],
+        written: None,
     }];
     world.viewpoints = vec![Viewpoint {
         name: "Eye".into(),
         room: 0,
         eye: DVec3::new(0.6, 2.0, 1.2),
         directions: vec![DVec3::X],
-        indices: vec![Quantity::Ugr],
+        indices: Vec::new(),
         light_scene: None,
     }];
     Ok(project)

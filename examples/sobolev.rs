@@ -28,9 +28,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let local = LocalEffort { chains: 64, connections: 64.0, returns: 16, ..LocalEffort::default() };
     let links = Effort { gather: 64, walks: 16, ..Effort::default() };
     let methods = [
-        ("links", Method::Links, links, 8192),
-        ("local", Method::Local, Effort { local, ..Effort::default() }, 16_384),
-        ("path", Method::Path, Effort { paths: 64, ..Effort::default() }, 8192),
+        ("links", Method::Links, links, 16_384),
+        ("local", Method::Local, Effort { local, ..Effort::default() }, 65_536),
+        ("path", Method::Path, Effort { paths: 64, ..Effort::default() }, 16_384),
     ];
     let mut csv = String::from(
         "source_height,rho1,rho2,r,exact_lx,finite_discs_share,method,value_lx,lo_lx,hi_lx,difference_percent\n",

@@ -141,6 +141,14 @@ impl<'s> Emitters<'s> {
             .is_none_or(|mirror| self.mirrors[mirror].may_show(point, source.position, source.radius_m))
     }
 
+    /// Whether a source can light `triangle` straight: a luminaire's own light passes its body, so that
+    /// it cannot be reflected by it either. What a mirror sends back does not pass it.
+    #[inline]
+    pub fn lights(&self, source: &Source, triangle: u32) -> bool {
+        let body = &self.luminaire(source).body;
+        source.mirror.is_some() || body.is_empty() || !body.contains(&self.scene.tracer.surface(triangle))
+    }
+
     /// Probability with which a random estimate should consider a source; see [`Mirror::chance`].
     pub fn chance(&self, source: &Source) -> f64 {
         source.mirror.map_or(1.0, |mirror| self.mirrors[mirror].chance)
@@ -241,7 +249,8 @@ impl<'s> Emitters<'s> {
         let cos = arrival.direction.dot(mirror.normal).abs();
         let Some((reflectance, _)) = self.scene.bsdf(triangle).specular(cos) else { return 0.0 };
         let lift = tracer.offset_m();
-        let before = tracer.transmittance(point, arrival.direction, distance_m - lift, blind);
+        // The body lets light pass that has not yet met the mirror.
+        let before = tracer.transmittance(point, arrival.direction, distance_m - lift, &[]);
         if !(before * reflectance > 0.0) {
             return 0.0;
         }

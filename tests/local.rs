@@ -7,7 +7,7 @@ mod differences;
 mod sphere;
 
 use common::{furnished, lambert, planar, point_lamp, room, row, sheets};
-use differences::{agree, demand};
+use differences::{agree, brighter, demand};
 use gershun::estimate::Estimate;
 use gershun::material::{Bsdf, Material};
 use gershun::query::{Demand, Ray};
@@ -31,7 +31,8 @@ fn local_agrees_with_links_in_a_room_with_mirror_pane_and_opal() {
         DVec3::new(2.7, 2.2, 1.0),  // the opal
     ];
     let demand = demand(DVec3::new(6.0, 4.0, 2.8), DVec3::new(3.2, 0.6, 1.2), &targets);
-    agree("furnished, local", &furnished(), &demand, Method::Local, MANY);
+    let scene = furnished();
+    agree("furnished, local", &scene, &brighter(&scene), &demand, Method::Local, MANY);
 }
 
 #[test]
@@ -40,7 +41,8 @@ fn local_agrees_with_links_in_the_box() {
     let project = gershun::project::load(&path, &gershun::project::LoadOptions::default()).expect("it loads");
     let targets = [DVec3::new(0.0, 2.0, 1.2), DVec3::new(2.5, 4.0, 2.0), DVec3::new(3.0, 2.0, 0.0)];
     let demand = demand(DVec3::new(5.0, 4.0, 2.8), DVec3::new(2.7, 0.6, 1.2), &targets);
-    agree("box, local", &project.worlds[0].scene, &demand, Method::Local, MANY);
+    let scene = &project.worlds[0].scene;
+    agree("box, local", scene, &brighter(scene), &demand, Method::Local, MANY);
 }
 
 /// |value − truth| in standard errors, after a check that `resolve` · truth can be told apart.
@@ -178,4 +180,33 @@ fn the_bounded_kernel_tames_corners() {
     assert!(plain[0].se > 3.0 * bounded[0].se, "no heavier tail: {plain:?} {bounded:?}");
     let difference = (plain[1].value - bounded[1].value) / plain[1].se.hypot(bounded[1].se);
     assert!(difference.abs() < 5.0, "both are unbiased away from surfaces: {difference}");
+}
+
+/// Catches: light that passes a luminaire's body and is reflected by it as well. A white plate under a
+/// point source, black all round: a receiver above that looks down sees it only if it is no body.
+#[test]
+fn a_body_does_not_reflect_the_light_that_it_lets_pass() {
+    let scene = |body: bool| {
+        let mut mesh = room(DVec3::splat(4.0));
+        let plate = mesh.add_surface("plate", 3, true);
+        let corners = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]];
+        mesh.add_quad(corners.map(|[x, y]| DVec3::new(x, y, 1.5)), plate);
+        let black = ["floor", "walls", "ceiling"].map(|name| lambert(name, 0.0));
+        let materials = black.into_iter().chain([lambert("plate", 0.9)]).collect();
+        let mut lamp = point_lamp(1000.0, DVec3::splat(2.0));
+        lamp.body = if body { vec![plate] } else { Vec::new() };
+        Scene::new(mesh, materials, vec![lamp]).expect("the scene is valid")
+    };
+    let demand =
+        Demand { receivers: vec![planar(DVec3::new(2.0, 2.0, 3.0), -DVec3::Z)], ..Demand::default() };
+    let value = |scene: &Scene, method| {
+        let sheets = sheets(scene, &demand, method, Effort::default(), 1, 64);
+        Estimate::from_blocks(&row(&sheets, 0, 1)).value - 1000.0 / (4.0 * std::f64::consts::PI)
+    };
+    for method in [Method::Links, Method::Path, Method::Local, Method::Double] {
+        let (with, without) = (value(&scene(true), method), value(&scene(false), method));
+        println!("{method:?}: {with:.3} lx from the body, {without:.3} lx from a mere plate");
+        assert!(with.abs() < 1e-4, "{method:?}: {with} lx are reflected by the body");
+        assert!(without > 10.0, "{method:?}: a plate must reflect: {without}");
+    }
 }

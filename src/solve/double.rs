@@ -66,6 +66,7 @@ impl Prepared<'_> {
 struct Seen<'s> {
     point: DVec3,
     normal: DVec3,
+    triangle: u32,
     bsdf: &'s Bsdf,
     /// Local frame, z = normal on the side of the eye.
     frame: DMat3,
@@ -83,6 +84,7 @@ impl<'s> Seen<'s> {
         Self {
             point: arrived.point,
             normal: arrived.normal,
+            triangle: arrived.triangle,
             bsdf: prepared.scene.bsdf(arrived.triangle),
             frame,
             wo: frame.transpose() * arrived.towards_eye,

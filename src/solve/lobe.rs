@@ -26,6 +26,7 @@ pub(super) struct Onward {
 /// One look by a lobe.
 struct Look<'a> {
     lobe: &'a Lobe,
+    triangle: u32,
     origin: DVec3,
     /// Local direction to the eye.
     to_eye: DVec3,
@@ -55,6 +56,7 @@ pub(super) fn scatter(
     let world = sphere::frame(landing.normal);
     let look = Look {
         lobe,
+        triangle: landing.triangle,
         origin: landing.origin(emitters.scene, true),
         to_eye: world.transpose() * landing.to_eye,
         weight: landing.weight,
@@ -74,6 +76,9 @@ pub(super) fn scatter(
     let direction = world * local;
     let (_, found) = look.towards(local);
     for source in &emitters.sources {
+        if !emitters.lights(source, look.triangle) {
+            continue;
+        }
         let Some((luminance, arrival)) = emitters.along(source, look.origin, direction) else { continue };
         let passed = emitters.passed(source, look.origin, &arrival);
         let drawn = emitters.chance(source) * emitters.density(source, &arrival);
@@ -88,7 +93,7 @@ fn add_lamps(emitters: &Emitters, look: &Look, world: glam::DMat3, rng: &mut Rng
     scratch.clear();
     let mut total = 0.0;
     for (index, source) in emitters.sources.iter().enumerate() {
-        if !emitters.may_show(source, look.origin) {
+        if !(emitters.may_show(source, look.origin) && emitters.lights(source, look.triangle)) {
             continue;
         }
         let considered = emitters.chance(source);

@@ -188,7 +188,7 @@ pub(super) fn add_direct(
     for (index, source) in emitters.sources.iter().enumerate() {
         let shows =
             emitters.may_show(source, above) || (transmittance > 0.0 && emitters.may_show(source, below));
-        if !shows {
+        if !(shows && emitters.lights(source, landing.triangle)) {
             continue;
         }
         let considered = emitters.chance(source);

@@ -62,6 +62,7 @@ struct Lit {
     /// Normal illuminance times the number of luminaires, lx.
     lx: f64,
     direction: DVec3,
+    luminaire: usize,
     channel: usize,
     /// Density in 1/sr with which this direction was chosen; infinite for a point.
     density: f64,
@@ -96,17 +97,28 @@ fn one_lamp(
     let per_sr = distance_m * distance_m;
     let lx = shine.weight * intensity_cd / per_sr * passed * count as f64;
     let density = per_sr / (shine.weight * lamp.kind.opening.seen_m2(local)) / count as f64;
-    Some(Lit { lx, direction, channel: scene.channel_of[chosen], density })
+    Some(Lit { lx, direction, luminaire: chosen, channel: scene.channel_of[chosen], density })
 }
 
 /// Luminance of the luminaires that a ray from a glossy surface meets straight or through panes,
 /// shared with [`one_lamp`], which finds the same light: the density of each over the sum of both.
-fn glossy_lamps(scene: &Scene, origin: DVec3, direction: DVec3, density: f64, weight: f64, out: &mut [f64]) {
+fn glossy_lamps(
+    scene: &Scene,
+    surface: u32,
+    origin: DVec3,
+    direction: DVec3,
+    density: f64,
+    weight: f64,
+    out: &mut [f64],
+) {
     let count = scene.luminaires.len() as f64;
     for (index, lamp) in scene.luminaires.iter().enumerate() {
         let into = lamp.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - lamp.position), into * direction);
         let Some(met) = lamp.kind.opening.along(o, d) else { continue };
+        if lamp.body.contains(&surface) {
+            continue;
+        }
         let reach = met.distance_m - 2.0 * scene.tracer.offset_m();
         let passed = scene.tracer.transmittance(origin, direction, reach, &lamp.body);
         let luminance = lamp.kind.distribution.intensity_along(-d) * lamp.dim / met.projected_m2;
@@ -158,7 +170,11 @@ fn trace(
         if bsdf.specular(to_eye.z).is_none() {
             diffuse_seen = true;
             let side = |from: DVec3| point + normal * lift * (from - point).dot(normal).signum();
-            if let Some(lit) = one_lamp(scene, rng, point, side) {
+            // A luminaire's own light passes its body and is not reflected by it.
+            let surface = scene.tracer.surface(hit.triangle);
+            let lit = one_lamp(scene, rng, point, side)
+                .filter(|lit| !scene.luminaires[lit.luminaire].body.contains(&surface));
+            if let Some(lit) = lit {
                 let local = frame.transpose() * lit.direction;
                 let share = match bsdf.lobe() {
                     Some(_) if lit.density.is_finite() => {
@@ -176,7 +192,8 @@ fn trace(
             if bsdf.lobe().is_some() {
                 let density = bsdf.pdf(next.direction, to_eye);
                 let (origin, towards) = (point + normal * lift, frame * next.direction);
-                glossy_lamps(scene, origin, towards, density, weight * next.weight, out);
+                let surface = scene.tracer.surface(hit.triangle);
+                glossy_lamps(scene, surface, origin, towards, density, weight * next.weight, out);
             }
         } else if next.direction.z > 0.0 {
             sees_lamps = true;

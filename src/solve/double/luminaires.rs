@@ -37,7 +37,8 @@ pub(super) fn add_luminaires(
     desk.lit.clear();
     let mut total = 0.0;
     for (index, source) in emitters.sources.iter().enumerate() {
-        if !(emitters.may_show(source, above) || emitters.may_show(source, below)) {
+        let shows = emitters.may_show(source, above) || emitters.may_show(source, below);
+        if !(shows && emitters.lights(source, seen.triangle)) {
             continue;
         }
         let considered = emitters.chance(source);

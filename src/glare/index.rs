@@ -1,7 +1,7 @@
 //! The table of indices: what there is to compute of a view, with units, sources and limits. Whatever
 //! lists, parses or prints indices reads it; a new index is one function and one row.
 
-use super::source::Sight;
+use super::source::{Given, Sight};
 use super::{
     cgi, dgi, dgp, discomfort, ggr, gr, luminances, threshold_increment, ugp, ugr, ugr_exp, vcp, veiling,
 };
@@ -107,6 +107,17 @@ pub struct Reading {
 }
 
 impl Index {
+    /// What was assumed for it beside the view, to be printed with it.
+    pub fn assumption(&self, given: &Given) -> Option<String> {
+        match self.key {
+            "DGP" if given.low_light => Some(format!("{}, low-light factor", given.dgp.words())),
+            "DGP" => Some(given.dgp.words().to_owned()),
+            "L_veil" => Some(format!("an eye of {} years, pigment {}", given.age_years, given.pigment)),
+            "L_veil_age" | "f_TI" => Some(format!("an eye of {} years", given.age_years)),
+            _ => None,
+        }
+    }
+
     /// The index of a view with its notes; an undefined index has none.
     pub fn read(&self, sight: &Sight) -> Reading {
         let value = (self.value)(sight);

@@ -7,7 +7,7 @@ use super::field::{Band, Cone, Field};
 use super::index::{INDICES, Reading};
 use super::luminances::Zones;
 use super::position_index::{Position, PositionModel};
-use super::source::{DgpForm, Given, Sight};
+use super::source::{Given, Sight};
 use crate::image::LuminanceImage;
 use crate::units::{Nits, Undefined};
 
@@ -174,10 +174,7 @@ fn convention(options: &Options, threshold: Nits) -> String {
         Some(_) => "E_v measured",
         None => "E_v of the image",
     };
-    let dgp = match options.given.dgp {
-        DgpForm::Evalglare => "DGP with evalglare's coefficients (0.092, 0.159)",
-        DgpForm::Published => "DGP with the published coefficients (0.0918, 0.16)",
-    };
+    let dgp = options.given.dgp.words();
     let low_light = if options.given.low_light { ", low-light factor" } else { "" };
     format!(
         "{threshold}; pixels within {} rad of each other are one source; {peak}; luminance of a source: mean \

@@ -89,6 +89,16 @@ pub enum DgpForm {
     Published,
 }
 
+impl DgpForm {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Evalglare => "DGP with evalglare's coefficients (0.092, 0.159)",
+            Self::Published => "DGP with the published coefficients (0.0918, 0.16)",
+        }
+    }
+}
+
 impl Default for Given {
     /// A reader of 25 with brown eyes; nothing assumed about the surroundings.
     fn default() -> Self {

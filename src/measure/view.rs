@@ -130,7 +130,8 @@ pub fn glare(
         indices: indices
             .map(|index| {
                 let gauged = gauge(index);
-                let notes = if gauged.value.is_ok() { (index.validity)(&sight) } else { Vec::new() };
+                let mut notes = if gauged.value.is_ok() { (index.validity)(&sight) } else { Vec::new() };
+                notes.extend(index.assumption(&sight.given).filter(|_| gauged.value.is_ok()));
                 GaugedIndex { index, gauged, notes }
             })
             .collect(),

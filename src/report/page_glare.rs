@@ -87,10 +87,72 @@ pub fn observers(views: &[ViewpointOutcome], lang: Lang) -> String {
         );
     }
     html.push_str(&further(views, lang));
+    html.push_str(&roses(views, lang));
     for view in views.iter().filter(|view| !view.sources.is_empty()) {
         html.push_str(&sources(view, lang));
     }
     html
+}
+
+/// A rose of UGR for every observer that looks in several directions: spokes from 10 to 30, the
+/// circles at 19 and 25, the worst direction bold and in words.
+fn roses(views: &[ViewpointOutcome], lang: Lang) -> String {
+    let mut html = String::new();
+    let mut start = 0;
+    while start < views.len() {
+        let same = |view: &&ViewpointOutcome| view.name == views[start].name;
+        let of_name: Vec<&ViewpointOutcome> = views[start..].iter().take_while(same).collect();
+        start += of_name.len();
+        let mut scenes: Vec<&str> = of_name.iter().map(|view| view.light_scene.as_str()).collect();
+        scenes.sort_unstable();
+        scenes.dedup();
+        for scene in scenes {
+            let sweep: Vec<(f64, f64)> = of_name
+                .iter()
+                .filter(|view| view.light_scene == scene)
+                .filter_map(|view| Some((view.azimuth_deg, view.ugr.as_ref().ok()?.value)))
+                .collect();
+            if let (true, Some(worst)) = (sweep.len() > 2, sweep.iter().max_by(|a, b| a.1.total_cmp(&b.1))) {
+                html.push_str(&rose(of_name[0], scene, &sweep, *worst, lang));
+            }
+        }
+    }
+    html
+}
+
+fn rose(view: &ViewpointOutcome, scene: &str, sweep: &[(f64, f64)], worst: (f64, f64), lang: Lang) -> String {
+    let radius = |ugr: f64| 60.0 * ((ugr - 10.0) / 20.0).clamp(0.0, 1.0);
+    let mut svg = String::from("<svg viewBox=\"-70 -70 140 140\" width=\"180\" height=\"180\">");
+    for level in [19.0, 25.0] {
+        put(
+            &mut svg,
+            format_args!(
+                "<circle r=\"{}\" fill=\"none\" stroke=\"#bbb\" stroke-width=\"0.5\"/>",
+                radius(level)
+            ),
+        );
+    }
+    for &(azimuth_deg, ugr) in sweep {
+        let (sin, cos) = azimuth_deg.to_radians().sin_cos();
+        let bold = if ugr >= worst.1 { 2.5 } else { 1.0 };
+        put(
+            &mut svg,
+            format_args!(
+                "<line x1=\"0\" y1=\"0\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"#333\" stroke-width=\"{bold}\"/>",
+                radius(ugr) * cos,
+                -radius(ugr) * sin
+            ),
+        );
+    }
+    svg.push_str("</svg>");
+    format!(
+        "<figure>{svg}<figcaption class=\"note\">{} — {}: {} {}, {}°</figcaption></figure>\n",
+        escape(&view.name),
+        escape(scene),
+        words::symbol(lang, Quantity::Ugr, Statistic::Max).text(),
+        number::fixed(lang, worst.1, 1),
+        number::fixed(lang, worst.0, 0),
+    )
 }
 
 /// The indices that observers ask for beside UGR, a line each.

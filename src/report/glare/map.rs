@@ -193,16 +193,20 @@ fn legend(map: &Mapped, height: f64, svg: &mut String) {
             ),
         );
     }
-    put(
-        svg,
-        format_args!(
-            "<text x=\"{MARGIN}\" y=\"{:.1}\">{}: UGR, worst of {} directions; spokes from 10 to 30; light scene {}; \
-             initial flux; {}</text>\n",
-            y + 30.0,
-            escape(&map.name),
-            map.azimuths_deg.len(),
-            escape(&map.light_scene),
-            escape(&map.convention)
-        ),
+    let named = format!(
+        "{}: UGR, worst of {} directions; spokes from 10 to 30; light scene {}; initial flux",
+        map.name,
+        map.azimuths_deg.len(),
+        map.light_scene
     );
+    for (line, text) in [named.as_str(), map.convention.as_str()].into_iter().enumerate() {
+        put(
+            svg,
+            format_args!(
+                "<text x=\"{MARGIN}\" y=\"{:.1}\">{}</text>\n",
+                y + 28.0 + 14.0 * line as f64,
+                escape(text)
+            ),
+        );
+    }
 }

@@ -233,8 +233,10 @@ fn f32_and_obvhs_live_in_the_ray_tracer() {
 const ORDER: &[&str] = &[
     "main",
     "commands_lamp",
+    "commands_view",
     "args",
     "args_lamp",
+    "args_view",
     "lib",
     "report",
     "biases",

@@ -21,6 +21,7 @@ pub use photometric::{ReadError, is_same_file, read_photometry};
 
 use crate::geometry::trace::Simd;
 use crate::grid::GridRule;
+use crate::image::View;
 use crate::norm::Standard;
 use crate::quantity::{Quantity, Statistic};
 use crate::scene::Scene;
@@ -155,6 +156,8 @@ pub struct World {
     pub areas: Vec<AreaSpec>,
     /// Observers.
     pub viewpoints: Vec<Viewpoint>,
+    /// Cameras for pictures.
+    pub cameras: Vec<Camera>,
     /// Requirements of `[[require]]` that concern this world.
     pub requirements: Vec<CustomRequirement>,
 }
@@ -273,6 +276,19 @@ pub struct Viewpoint {
     pub indices: Vec<Quantity>,
     /// Light scene; `None`: the first.
     pub light_scene: Option<usize>,
+}
+
+/// A camera for luminance pictures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Name, unique among the cameras of the project.
+    pub name: String,
+    /// Index of its room within the world.
+    pub room: usize,
+    /// Where it stands, how it looks, and its projection.
+    pub view: View,
+    /// Columns and rows.
+    pub size: [usize; 2],
 }
 
 /// A light scene: factors of the groups, multiplied with each luminaire's `dim`.

@@ -62,6 +62,19 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
     Sheet { values, flux: None, counts: desk.counts }
 }
 
+/// One ray's answer into one row, for pictures, which have more rays than a sheet should hold.
+pub(super) fn one_ray(prepared: &Prepared, ray: &Ray, rng: &mut Rng, row: &mut [f64]) {
+    let zero = vec![0.0; prepared.scene.channels.len()];
+    let mut desk = Desk {
+        seen: zero.clone(),
+        residual: zero.clone(),
+        met: zero,
+        scratch: Vec::new(),
+        counts: Counts::default(),
+    };
+    answer_ray(prepared, ray, rng, &mut desk, row);
+}
+
 fn answer_receiver(
     prepared: &Prepared,
     receiver: &Receiver,

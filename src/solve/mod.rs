@@ -5,6 +5,7 @@ mod answer;
 mod flux;
 mod look;
 mod path;
+pub mod picture;
 mod prepare;
 
 use glam::DVec3;

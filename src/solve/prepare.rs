@@ -23,6 +23,8 @@ const NOWHERE: u32 = u32::MAX;
 
 /// What one patch side receives.
 struct Collected {
+    /// The part of `first` that luminaires and their images make here.
+    direct: Vec<f64>,
     /// Luminance that direct light and emitting surfaces make here, per channel.
     first: Vec<f64>,
     /// Where its links end: patch sides, or `NOWHERE`.
@@ -31,6 +33,11 @@ struct Collected {
 
 /// Builds the field from stream 0 of `seed`.
 pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> LuminanceField {
+    parts(emitters, effort, seed).0
+}
+
+/// The field, and the part of it that luminaires and their images make at first hand.
+pub(super) fn parts(emitters: &Emitters, effort: &Effort, seed: u64) -> (LuminanceField, LuminanceField) {
     let scene = emitters.scene;
     let diffuse = |triangle: usize| scene.bsdf(triangle as u32).specular(1.0).is_none();
     let area_m2: f64 = (0..scene.mesh.triangles.len())
@@ -45,11 +52,13 @@ pub(super) fn field(emitters: &Emitters, effort: &Effort, seed: u64) -> Luminanc
         .map(|side| collect(emitters, &patches, effort, side, &mut Rng::new(seed, 0, side as u64)))
         .collect();
     let mut field = LuminanceField::dark(patches, channels);
+    let mut direct = field.clone();
     for (side, entry) in collected.iter().enumerate() {
         field.at_mut(side).copy_from_slice(&entry.first);
+        direct.at_mut(side).copy_from_slice(&entry.direct);
     }
     sweep(emitters, &mut field, &collected);
-    field
+    (field, direct)
 }
 
 fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize, rng: &mut Rng) -> Collected {
@@ -62,7 +71,7 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
     let mut counts = Counts::default();
     let total = reflectance + transmittance;
     if !(total > 0.0) {
-        return Collected { first, links: Vec::new() };
+        return Collected { direct: first.clone(), first, links: Vec::new() };
     }
     let landing = |u: [f64; 3]| {
         let place = patches.place(&scene.mesh, side, u);
@@ -78,6 +87,7 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
     for value in &mut first {
         *value /= f64::from(DIRECT_SAMPLES);
     }
+    let direct = first.clone();
     let (places, directions) = (Stratified::new(rng), Stratified::new(rng));
     let mut links = Vec::with_capacity(effort.links as usize);
     let mut met = vec![0.0; channels];
@@ -97,7 +107,7 @@ fn collect(emitters: &Emitters, patches: &Patches, effort: &Effort, side: usize,
     for (value, met) in first.iter_mut().zip(&met) {
         *value += met * total / f64::from(effort.links.max(1));
     }
-    Collected { first, links }
+    Collected { direct, first, links }
 }
 
 /// L(side) = first + (ρ + τ)/n Σ L(link), in place, in a fixed order.

@@ -9,7 +9,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::polygon;
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
-use crate::project::{AreaSpec, CustomRequirement, Room, Viewpoint};
+use crate::project::{AreaSpec, Camera, CustomRequirement, Room, Viewpoint};
 
 /// What stands on a room's boundary still belongs to it, m.
 const TOLERANCE_M: f64 = 0.01;
@@ -32,6 +32,7 @@ pub struct Draft {
     pub luminaires: Vec<Luminaire>,
     pub areas: Vec<AreaSpec>,
     pub viewpoints: Vec<Viewpoint>,
+    pub cameras: Vec<Camera>,
     pub requirements: Vec<CustomRequirement>,
 }
 
@@ -68,6 +69,7 @@ impl Draft {
             luminaires: Vec::new(),
             areas: Vec::new(),
             viewpoints: Vec::new(),
+            cameras: Vec::new(),
             requirements: Vec::new(),
         }
     }

@@ -4,6 +4,7 @@
 mod area_surface;
 mod areas;
 mod cad;
+mod cameras;
 mod draft;
 mod furniture;
 mod lists;
@@ -49,9 +50,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     settings::requirements(file, &mut drafts, &light_scenes, context);
     let declared = settings::declared(file, &drafts, context);
     let accuracy = settings::accuracy(file, context);
-    if !file.cameras.is_empty() {
-        context.note("cameras are not rendered by check");
-    }
+    cameras::add(file, &mut drafts, context);
     if !file.glare_maps.is_empty() {
         context.note("glare maps are not computed by check");
     }
@@ -84,6 +83,7 @@ fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World
             rooms: draft.rooms,
             areas: draft.areas,
             viewpoints: draft.viewpoints,
+            cameras: draft.cameras,
             requirements: draft.requirements,
         }),
         Err(error) => {

@@ -38,6 +38,9 @@ pub enum Command {
   gershun check --format json scenes/box > box.json
   gershun check --blocks 256 --seed 7 scenes/box      # the same bytes every time")]
     Check(Check),
+    /// Luminance pictures of the cameras
+    #[command(after_help = crate::args_view::EXAMPLES)]
+    View(crate::args_view::View),
     /// Start a new project from a small commented example
     #[command(after_help = "Example:
   gershun new my-office && gershun check my-office")]

@@ -218,6 +218,14 @@ impl<'s> Emitters<'s> {
         })
     }
 
+    /// Unit direction from `point` to the point of an opening at `u`, and the distance, m.
+    pub fn towards(&self, source: &Source, point: DVec3, u: [f64; 2]) -> Option<(DVec3, f64)> {
+        let shine = source.opening.shine(source.place(point), u)?;
+        let towards = source.position + source.world_from_luminaire * shine.at - point;
+        let distance_m = towards.length();
+        (distance_m > 0.0).then(|| (towards / distance_m, distance_m))
+    }
+
     /// Share of an arrival that reaches `point`: 0 behind anything opaque, pane transmittances,
     /// and for an image the specular reflectance at the place where the ray meets the mirror.
     pub fn passed(&self, source: &Source, point: DVec3, arrival: &Arrival) -> f64 {

@@ -5,8 +5,10 @@
 mod args;
 mod args_glare;
 mod args_lamp;
+mod args_view;
 mod commands_glare;
 mod commands_lamp;
+mod commands_view;
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -18,7 +20,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use gershun::norm::{self, Standard, bundled};
 use gershun::outcome::{Outcome, Verdict};
-use gershun::project::{Project, load};
+use gershun::project::{Diagnostic, Project, load};
 use gershun::report::{self, Colour, Lang, Style};
 use gershun::{Progress, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         Command::New { dir } => new_project(&dir),
         Command::Schema => say(report::schema()),
         Command::Glare(command) => commands_glare::run(&command),
+        Command::View(view) => commands_view::run(&view),
         Command::Lamp(command) => commands_lamp::run(&command),
         Command::Explain { code } => commands_lamp::explain(&code),
         Command::Norm(Norm::List) => list_norms(),
@@ -63,14 +66,37 @@ fn complain(message: &str) -> u8 {
     BAD_INPUT
 }
 
+/// A word beside the results, on standard error.
+fn remark(message: &str) {
+    eprintln!("{message}");
+}
+
+/// All mistakes of a project.
+fn complain_of_all(diagnostics: &[Diagnostic], path: &Path) {
+    for diagnostic in diagnostics {
+        eprintln!("{diagnostic}\n");
+    }
+    let count = diagnostics.len();
+    eprintln!(
+        "{count} mistake{} in {}; nothing was computed",
+        if count == 1 { "" } else { "s" },
+        path.display()
+    );
+}
+
+/// Starts the threads asked for, or returns the exit code.
+fn use_threads(threads: Option<u16>) -> Result<(), u8> {
+    let Some(threads) = threads else { return Ok(()) };
+    let started = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
+    started.map_err(|error| complain(&format!("cannot start {threads} threads: {error}")))
+}
+
 fn run_checks(check: &Check) -> u8 {
     if check.out.is_some() && check.projects.len() > 1 {
         return complain("--out takes one project; without it each report goes to out/<project name>");
     }
-    if let Some(threads) = check.threads
-        && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()
-    {
-        return complain(&format!("cannot start {threads} threads: {error}"));
+    if let Err(code) = use_threads(check.threads) {
+        return code;
     }
     let interrupted = Arc::new(AtomicBool::new(false));
     let flag = interrupted.clone();
@@ -117,15 +143,7 @@ fn load_one(path: &Path, check: &Check) -> Option<Project> {
             Some(project)
         }
         Err(diagnostics) => {
-            for diagnostic in &diagnostics {
-                eprintln!("{diagnostic}\n");
-            }
-            let count = diagnostics.len();
-            eprintln!(
-                "{count} mistake{} in {}; nothing was computed",
-                if count == 1 { "" } else { "s" },
-                path.display()
-            );
+            complain_of_all(&diagnostics, path);
             None
         }
     }

@@ -599,6 +599,8 @@ surface = "Wall_W"
 [[camera]]
 name = "c"
 eye = [1, 1, 1]
+target = [2, 1, 1]
+fisheye = "hemispherical"
 size = [10, 10]
 "#;
     let project = load_in(folder.path(), text).unwrap_or_else(|e| panic!("{}", all(&e)));
@@ -613,7 +615,9 @@ size = [10, 10]
     assert_eq!(furniture, 1);
     assert_eq!(first.scene.channels.len(), 2);
     assert_eq!(second.areas[0].name, "West");
-    assert!(project.biases.iter().any(|bias| bias.contains("cameras")));
+    let cameras: Vec<_> = project.worlds.iter().flat_map(|world| &world.cameras).collect();
+    assert_eq!((cameras[0].name.as_str(), cameras[0].size, cameras.len()), ("c", [10, 10], 1));
+    assert_eq!(cameras[0].view.forward(), glam::DVec3::X);
     assert_eq!(project.inputs.len(), 3);
 
     fs::write(folder.path().join("places.csv"), "luminaire,x,y,z\nA,1,1,2.5\nA,1,one,2.5\n").unwrap();
@@ -763,4 +767,40 @@ fn walls_that_the_norm_asks_for_are_called_like_their_surfaces() {
     );
     let expected: Vec<String> = (1..=6).map(|number| format!("L · Wall_{number}")).collect();
     assert_eq!(walls(&corner), expected);
+}
+
+/// Catches: a camera that would divide by zero or exhaust memory later, or a mistake without its place.
+#[test]
+fn cameras_are_checked() {
+    let folder = tempfile::tempdir().expect("tempdir");
+    let with = |camera: &str| {
+        let shell = "size = [4, 4, 3], floor = 0.2, walls = 0.5, ceiling = 0.7";
+        let text = format!("[scene]\nbox = {{ {shell} }}\n[[camera]]\nname = \"c\"\n{camera}\n");
+        load_in(folder.path(), &text)
+    };
+    let good =
+        with("eye = [1, 1, 1]\ndirection = [0, 0, -1]\nfov = 90\nsize = [200, 100]").expect("a camera");
+    let camera = &good.worlds[0].cameras[0];
+    assert_eq!(camera.view.up(), glam::DVec3::Y);
+    let gershun::image::Projection::Perspective { horizontal_deg, vertical_deg } = camera.view.projection
+    else {
+        panic!("{:?}", camera.view.projection)
+    };
+    // Square pixels: half the width is half the tangent.
+    assert!((horizontal_deg - 90.0).abs() < 1e-12 && (vertical_deg - 53.130_102_354).abs() < 1e-6);
+    for (camera, message) in [
+        ("eye = [1, 1, 1]", "looks nowhere"),
+        ("eye = [1, 1, 1]\ndirection = [1, 0, 0]\ntarget = [2, 2, 2]", "either"),
+        ("eye = [1, 1, 1]\ndirection = [0, 0, 0]", "do not make a view"),
+        ("eye = [1, 1, 1]\ndirection = [1, 0, 0]\nup = [1, 0, 0]", "do not make a view"),
+        ("eye = [1, 1, 1]\ndirection = [1, 0, 0]\nfov = 180", "180"),
+        ("eye = [1, 1, 1]\ndirection = [1, 0, 0]\nsize = [20000, 20000]", "pixels"),
+        ("eye = [1, 1, 1]\ndirection = [1, 0, 0]\nsize = [0, 10]", "pixels"),
+        ("eye = [9, 1, 1]\ndirection = [1, 0, 0]", "outside of every room"),
+        ("eye = [1, 1, 1]\ndirection = [1, 0, 0]\nfisheye = \"square\"", "square"),
+    ] {
+        let errors = with(camera).expect_err(camera);
+        assert_eq!(errors.len(), 1, "{}", all(&errors));
+        assert!(all(&errors).contains(message), "{camera}: {}", all(&errors));
+    }
 }

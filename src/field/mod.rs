@@ -3,10 +3,12 @@
 //! frozen after it is built; the solver corrects it without bias, so it decides only the noise.
 
 mod patches;
+mod smooth;
 
 use glam::DVec3;
 
 pub use patches::Patches;
+pub use smooth::Smooth;
 
 /// Luminance of every patch side for every channel, cd/m².
 #[derive(Clone, Debug)]

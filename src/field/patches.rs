@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
+
 use super::Place;
 use crate::geometry::mesh::Mesh;
 
@@ -94,6 +96,22 @@ impl Patches {
         self.members[last as usize - 1].2
     }
 
+    /// Area-weighted centre of a patch, m, and mean normal of its front (not normalised).
+    pub fn centre(&self, mesh: &Mesh, side: usize) -> (DVec3, DVec3) {
+        let (first, last) = self.ranges[side / 2];
+        let (mut centre, mut facing, mut before) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for &(triangle, part, cumulative) in &self.members[first as usize..last as usize] {
+            let [a, b, c] = mesh.corners(triangle as usize);
+            let divisions = self.of_triangle[triangle as usize].1;
+            let [s, t] = within(part, divisions, [1.0 / 3.0; 2]);
+            let area = cumulative - before;
+            before = cumulative;
+            centre += (a + (b - a) * s + (c - a) * t) * area;
+            facing += mesh.normal_and_area(triangle as usize).0 * area;
+        }
+        (centre / before, facing / before)
+    }
+
     /// A place on the patch, uniform in area.
     pub fn place(&self, mesh: &Mesh, side: usize, u: [f64; 3]) -> Place {
         let (first, last) = self.ranges[side / 2];
@@ -140,7 +158,6 @@ fn within(part: u32, divisions: u32, local: [f64; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::rng::Rng;
-    use glam::DVec3;
 
     #[test]
     fn places_lie_on_their_patch_and_parts_have_equal_area() {

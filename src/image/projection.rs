@@ -70,6 +70,33 @@ impl Projection {
         }
     }
 
+    /// The same angle across, and the height that makes pixels square in an image of `size`. It may
+    /// be an angle that the projection does not have; [`View::new`] refuses it then.
+    #[must_use]
+    pub fn with_square_pixels(self, size: [usize; 2]) -> Self {
+        let ratio = size[1] as f64 / size[0] as f64;
+        let stretched = |angle: f64, plane: fn(f64) -> f64, back: fn(f64) -> f64| {
+            if size[0] == size[1] {
+                angle
+            } else {
+                2.0 * back(plane((0.5 * angle).to_radians()) * ratio).to_degrees()
+            }
+        };
+        match self {
+            Self::Perspective { horizontal_deg, .. } => {
+                let vertical_deg = stretched(horizontal_deg, f64::tan, f64::atan);
+                Self::Perspective { horizontal_deg, vertical_deg }
+            }
+            Self::AngularFisheye { horizontal_deg, .. } => {
+                Self::AngularFisheye { horizontal_deg, vertical_deg: horizontal_deg * ratio }
+            }
+            Self::HemisphericalFisheye { horizontal_deg, .. } => {
+                let vertical_deg = stretched(horizontal_deg, f64::sin, f64::asin);
+                Self::HemisphericalFisheye { horizontal_deg, vertical_deg }
+            }
+        }
+    }
+
     fn check(self) -> Result<(), ImageError> {
         let (angles, most, open) = match self {
             Self::Perspective { horizontal_deg, vertical_deg } => {

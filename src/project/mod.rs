@@ -21,6 +21,7 @@ pub use photometric::{ReadError, is_same_file, read_image, read_photometry};
 
 use crate::geometry::trace::Simd;
 use crate::grid::GridRule;
+use crate::image::View;
 use crate::norm::Standard;
 use crate::quantity::{Quantity, Statistic};
 use crate::scene::Scene;
@@ -157,6 +158,8 @@ pub struct World {
     pub viewpoints: Vec<Viewpoint>,
     /// Maps of glare.
     pub glare_maps: Vec<GlareMap>,
+    /// Cameras for pictures.
+    pub cameras: Vec<Camera>,
     /// Requirements of `[[require]]` that concern this world.
     pub requirements: Vec<CustomRequirement>,
 }
@@ -309,6 +312,19 @@ pub struct GlareMap {
     pub indices: Vec<&'static str>,
     /// Light scene; `None`: the first.
     pub light_scene: Option<usize>,
+}
+
+/// A camera for luminance pictures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Name, unique among the cameras of the project.
+    pub name: String,
+    /// Index of its room within the world.
+    pub room: usize,
+    /// Where it stands, how it looks, and its projection.
+    pub view: View,
+    /// Columns and rows.
+    pub size: [usize; 2],
 }
 
 /// A light scene: factors of the groups, multiplied with each luminaire's `dim`.

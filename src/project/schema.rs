@@ -283,19 +283,17 @@ pub struct GlareMapSection {
     pub light_scene: Option<At<String>>,
 }
 
-/// Read strictly; pictures and maps are later work.
-#[expect(dead_code, reason = "checked for spelling only")]
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraSection {
-    pub name: String,
-    pub eye: [f64; 3],
-    pub direction: Option<[f64; 3]>,
-    pub target: Option<[f64; 3]>,
-    pub up: Option<[f64; 3]>,
-    pub fov: Option<f64>,
+    pub name: At<String>,
+    pub eye: At<[f64; 3]>,
+    pub direction: Option<At<[f64; 3]>>,
+    pub target: Option<At<[f64; 3]>>,
+    pub up: Option<At<[f64; 3]>>,
+    pub fov: Option<At<f64>>,
     pub fisheye: Option<Fisheye>,
-    pub size: [u32; 2],
+    pub size: Option<At<[u32; 2]>>,
 }
 
 /// Fisheye projections of a camera.

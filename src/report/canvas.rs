@@ -159,6 +159,19 @@ impl Canvas {
         }
     }
 
+    /// A PNG image.
+    pub fn picture(&mut self, from: Px, to: Px, png: &[u8]) {
+        let ((x, y), (right, bottom)) = (coord(from), coord(to));
+        let (width, height) = (right - x, bottom - y);
+        let data = base64(png);
+        put(
+            &mut self.body,
+            format_args!(
+                "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{data}\"/>\n"
+            ),
+        );
+    }
+
     /// Many lines of one kind.
     pub fn lines<'a>(&mut self, lines: impl Iterator<Item = &'a [Px]>, colour: Rgb, width_px: f64) {
         let [r, g, b] = colour;
@@ -215,7 +228,37 @@ fn path_data<'a>(lines: impl Iterator<Item = &'a [Px]>, end: &str) -> String {
     data
 }
 
+/// RFC 4648.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let group =
+            chunk.iter().fold(0u32, |sum, &byte| sum << 8 | u32::from(byte)) << (8 * (3 - chunk.len()));
+        for place in 0..4 {
+            let letter = LETTERS[(group >> (18 - 6 * place) & 63) as usize];
+            text.push(if place > chunk.len() { '=' } else { char::from(letter) });
+        }
+    }
+    text
+}
+
 /// Width of a text, px, by the average width of sans-serif letters.
 pub fn text_width(text: &str, size_px: f64) -> f64 {
     0.63 * size_px * text.chars().count() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: a wrong padding, bits in the wrong order. Examples of RFC 4648.
+    #[test]
+    fn base64_has_its_examples() {
+        for (plain, coded) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            assert_eq!(base64(plain.as_bytes()), coded);
+        }
+    }
 }

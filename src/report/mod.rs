@@ -17,6 +17,8 @@ mod page;
 mod page_glare;
 mod page_requirements;
 mod page_room;
+pub mod picture;
+mod picture_colours;
 mod plan;
 mod plan_sheet;
 mod plan_view;
@@ -76,6 +78,9 @@ pub enum ReportError {
     /// A result could not be encoded.
     #[error("result: {0}")]
     Json(#[from] serde_json::Error),
+    /// A picture could not be encoded.
+    #[error("picture: {0}")]
+    Picture(String),
 }
 
 /// Writes the report into `out` and returns the files written, relative to it. Every file appears

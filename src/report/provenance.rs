@@ -46,6 +46,17 @@ pub fn provenance(outcome: &Outcome, files: &[(String, Vec<u8>)]) -> Result<Vec<
     })
 }
 
+#[derive(Serialize)]
+struct Manifest {
+    files: Vec<FileRow>,
+}
+
+/// A manifest only: the files of a folder with their hashes.
+pub fn manifest(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ReportError> {
+    let row = |(path, bytes): &(String, Vec<u8>)| FileRow { path: path.clone(), sha256: sha256(bytes) };
+    bytes(&Manifest { files: files.iter().map(row).collect() })
+}
+
 /// Paths and hashes that a provenance.json lists; empty if it is not one of ours.
 pub fn listed_files(provenance: &[u8]) -> Vec<(String, String)> {
     let Ok(file) = serde_json::from_slice::<serde_json::Value>(provenance) else {

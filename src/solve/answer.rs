@@ -45,20 +45,25 @@ struct Desk {
     bundles: Vec<Bundle>,
 }
 
+impl Desk {
+    fn new(channels: usize) -> Self {
+        Self {
+            seen: vec![0.0; channels],
+            residual: vec![0.0; channels],
+            sight: Sight::new(channels),
+            pending: Vec::new(),
+            onward: Vec::new(),
+            bundles: Vec::new(),
+        }
+    }
+}
+
 /// Block `stream` of a `Links` solution.
 pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
     let channels = prepared.scene.channels.len();
     let demand = prepared.demand;
     let mut values = vec![0.0; demand.rows() * channels * PARTS];
-    let zero = vec![0.0; channels];
-    let mut desk = Desk {
-        seen: zero.clone(),
-        residual: zero,
-        sight: Sight::new(channels),
-        pending: Vec::new(),
-        onward: Vec::new(),
-        bundles: Vec::new(),
-    };
+    let mut desk = Desk::new(channels);
     for (index, receiver) in demand.receivers.iter().enumerate() {
         let row = prepared.first_rows[index];
         let span = row * channels * PARTS..(row + receiver.kernels.len()) * channels * PARTS;
@@ -78,6 +83,12 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
         );
     }
     Sheet { values, flux: None, counts: desk.sight.counts }
+}
+
+/// One ray's answer into one row, for pictures, which have more rays than a sheet should hold.
+pub(super) fn one_ray(prepared: &Prepared, ray: &Ray, rng: &mut Rng, row: &mut [f64]) {
+    let mut desk = Desk::new(prepared.scene.channels.len());
+    answer_ray(prepared, ray, rng, &mut desk, row);
 }
 
 fn answer_receiver(

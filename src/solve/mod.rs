@@ -11,6 +11,7 @@ mod lobe;
 mod local;
 mod look;
 mod path;
+pub mod picture;
 mod prepare;
 
 use glam::DVec3;

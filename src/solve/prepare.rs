@@ -30,6 +30,8 @@ const BALANCED: u32 = 8;
 
 /// What one patch side receives.
 struct Collected {
+    /// The part of `first` that luminaires and their images make here.
+    direct: Vec<f64>,
     /// Luminance that direct light and emitting surfaces make here, per channel.
     first: Vec<f64>,
     /// Patch sides where its links end.
@@ -43,6 +45,16 @@ pub(super) fn field(
     effort: &Effort,
     seed: u64,
 ) -> LuminanceField {
+    parts(emitters, highlights, effort, seed).0
+}
+
+/// The field, and the part of it that luminaires and their images make at first hand.
+pub(super) fn parts(
+    emitters: &Emitters,
+    highlights: &Highlights,
+    effort: &Effort,
+    seed: u64,
+) -> (LuminanceField, LuminanceField) {
     let scene = emitters.scene;
     let diffuse = |triangle: usize| scene.bsdf(triangle as u32).specular(1.0).is_none();
     let area_m2: f64 = (0..scene.mesh.triangles.len())
@@ -59,11 +71,13 @@ pub(super) fn field(
         })
         .collect();
     let mut field = LuminanceField::dark(patches, channels);
+    let mut direct = field.clone();
     for (side, entry) in collected.iter().enumerate() {
         field.at_mut(side).copy_from_slice(&entry.first);
+        direct.at_mut(side).copy_from_slice(&entry.direct);
     }
     sweep(emitters, effort, &mut field, &collected);
-    field
+    (field, direct)
 }
 
 fn collect(
@@ -82,7 +96,7 @@ fn collect(
     let mut sight = Sight::new(channels);
     let total = reflectance + transmittance;
     if !(total > 0.0) {
-        return Collected { first, links: Vec::new() };
+        return Collected { direct: first.clone(), first, links: Vec::new() };
     }
     let landing = |u: [f64; 3]| {
         let place = patches.place(&scene.mesh, side, u);
@@ -99,6 +113,7 @@ fn collect(
     for value in &mut first {
         *value /= f64::from(DIRECT_SAMPLES);
     }
+    let direct = first.clone();
     let (places, directions) = (Stratified::new(rng), Stratified::new(rng));
     let mut bundles = Vec::new();
     let mut links = Vec::with_capacity(effort.links as usize);
@@ -139,7 +154,7 @@ fn collect(
     for (value, met) in first.iter_mut().zip(&met) {
         *value += met * total / f64::from(effort.links.max(1));
     }
-    Collected { first, links }
+    Collected { direct, first, links }
 }
 
 /// L(side) = first + (ρ + τ)/n Σ L(link), in place, in a fixed order.

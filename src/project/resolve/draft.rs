@@ -9,7 +9,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::polygon;
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
-use crate::project::{AreaSpec, CustomRequirement, GlareMap, Room, Viewpoint};
+use crate::project::{AreaSpec, Camera, CustomRequirement, GlareMap, Room, Viewpoint};
 
 /// What stands on a room's boundary still belongs to it, m.
 const TOLERANCE_M: f64 = 0.01;
@@ -35,6 +35,7 @@ pub struct Draft {
     pub areas: Vec<AreaSpec>,
     pub viewpoints: Vec<Viewpoint>,
     pub glare_maps: Vec<GlareMap>,
+    pub cameras: Vec<Camera>,
     pub requirements: Vec<CustomRequirement>,
 }
 
@@ -73,6 +74,7 @@ impl Draft {
             areas: Vec::new(),
             viewpoints: Vec::new(),
             glare_maps: Vec::new(),
+            cameras: Vec::new(),
             requirements: Vec::new(),
         }
     }

@@ -5,6 +5,7 @@ mod area_surface;
 mod areas;
 mod bodies;
 mod cad;
+mod cameras;
 mod draft;
 mod furniture;
 mod glare_maps;
@@ -56,9 +57,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     settings::requirements(file, &mut drafts, &light_scenes, context);
     let declared = settings::declared(file, &drafts, context);
     let accuracy = settings::accuracy(file, context);
-    if !file.cameras.is_empty() {
-        context.note("cameras are not rendered by check");
-    }
+    cameras::add(file, &mut drafts, context);
     if !file.glare_maps.is_empty() {
         context.note("glare maps are computed by `gershun glare`, not by check");
     }
@@ -94,6 +93,7 @@ fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World
                 areas: draft.areas,
                 viewpoints: draft.viewpoints,
                 glare_maps: draft.glare_maps,
+                cameras: draft.cameras,
                 requirements: draft.requirements,
             })
         }

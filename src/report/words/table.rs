@@ -200,9 +200,13 @@ pub enum Term {
     UnitPowerDensity,
     RoomsPassed,
     Worst,
+    LuminanceScale,
+    StoredPicture,
+    ExactPicture,
+    BlocksPicture,
 }
 
-const COUNT: usize = Term::Worst as usize + 1;
+const COUNT: usize = Term::BlocksPicture as usize + 1;
 
 /// Term, English, Russian; in the order of [`Term`].
 #[rustfmt::skip] // One row per term reads as the table it is.
@@ -403,4 +407,8 @@ pub const TERMS: [(Term, &str, &str); COUNT] = [
     (Term::UnitPowerDensity, "W/m²", "Вт/м²"),
     (Term::RoomsPassed, "{} rooms: ✓ {} comply, ✗ {} do not, ? {} are open", "помещений: {}; ✓ соответствуют: {}, ✗ не соответствуют: {}, ? не установлено: {}"),
     (Term::Worst, "tightest requirement", "наименьший запас"),
+    (Term::LuminanceScale, "luminance, cd/m²", "яркость, кд/м²"),
+    (Term::StoredPicture, "preview: the stored field, no interval", "предпросмотр: сохранённое поле, без интервала"),
+    (Term::ExactPicture, "direct light computed, indirect interpolated, no interval", "прямой свет рассчитан, отражённый интерполирован, без интервала"),
+    (Term::BlocksPicture, "unbiased mean of {} blocks, median standard error {} %", "несмещённое среднее по {} блокам, медиана стандартной погрешности {} %"),
 ];

@@ -1,0 +1,96 @@
+//! The command line of `gershun view`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use gershun::report::Lang;
+
+/// Arguments of `view`.
+#[derive(Args, Debug)]
+pub struct View {
+    /// project.toml or its folder
+    pub project: PathBuf,
+    /// Only this camera or viewpoint; may be repeated
+    #[arg(long, value_name = "NAME")]
+    pub camera: Vec<String>,
+    /// Show the stored field as it is: fast, no interval
+    #[arg(long, conflicts_with = "blocks")]
+    pub preview: bool,
+    /// Unbiased mean of this many blocks (at least 2), with a standard error for every pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub blocks: Option<u32>,
+    /// Columns and rows instead of the camera's own, e.g. 600x400
+    #[arg(long, value_name = "WxH", value_parser = pixels)]
+    pub size: Option<Pixels>,
+    /// Files to write
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "exr,svg")]
+    pub format: Vec<FormatChoice>,
+    /// Light scene [default: the viewpoint's own, else the first]
+    #[arg(long, value_name = "NAME")]
+    pub light_scene: Option<String>,
+    /// Folder whose `views` takes the pictures [default: out/<project name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of all randomness [default: the project's, else 1]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Number of threads; it never changes a result [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Language of the drawings: en or ru [default: the project's]
+    #[arg(long, value_name = "LANG", value_parser = language)]
+    pub lang: Option<Lang>,
+    /// Let the project read files outside its folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Help that follows the options.
+pub const EXAMPLES: &str =
+    "Luminances are those of the new installation (initial flux). Without --blocks a picture has no
+interval; views.json beside it says what it approximates. A viewpoint is an angular fisheye of 180°;
+viewpoints are shown where they are named, and all of them where the project has no [[camera]].
+
+Examples:
+  gershun view scenes/office
+  gershun view --preview --format png --camera \"Seat 1\" scenes/office
+  gershun view --format hdr --size 1200x1200 scenes/office      # for evalglare
+  gershun view --blocks 64 --format exr,svg --light-scene evening scenes/office";
+
+/// Formats of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatChoice {
+    /// OpenEXR: cd/m² in channel Y, standard errors in channel se
+    Exr,
+    /// Radiance HDR with VIEW and EXPOSURE
+    Hdr,
+    /// False colours with scale and text
+    Svg,
+    /// False colours with scale
+    Png,
+}
+
+/// Columns and rows.
+pub type Pixels = [usize; 2];
+
+fn language(text: &str) -> Result<Lang, String> {
+    Lang::parse(text).ok_or_else(|| format!("\"{text}\" is no language of the drawings; write en or ru"))
+}
+
+fn pixels(text: &str) -> Result<Pixels, String> {
+    let sides: Option<Vec<usize>> = text.split(['x', '×']).map(|side| side.trim().parse().ok()).collect();
+    match sides.as_deref() {
+        Some(&[width, height])
+            if (1..=32_000).contains(&width)
+                && (1..=32_000).contains(&height)
+                && width * height <= gershun::image::MOST_PIXELS =>
+        {
+            Ok([width, height])
+        }
+        Some([_, _]) => Err("at most 32 000 columns or rows and 64 million pixels".into()),
+        _ => Err(format!("\"{text}\" is not a size; write 600x400")),
+    }
+}

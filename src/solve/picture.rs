@@ -1,0 +1,373 @@
+//! Pictures: the luminance seen along every pixel's ray from the stored field. Mirrors and panes are
+//! followed exactly, both branches at glass; openings are seen exactly at the pixel's centre.
+//!
+//! Two of the three ways have no interval, for what they approximate is not sampled again:
+//! [`Detail::Stored`] shows the field as it is, [`Detail::Exact`] adds direct light computed where it
+//! is seen to the interpolated indirect part of the field. [`replicate`] is unbiased: independent
+//! blocks of the solver's own answer.
+
+mod direct;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::highlights::Highlights;
+use super::look::Landing;
+use super::{Counts, Effort, PARTS, Prepared, answer, prepare};
+use crate::emitters::Emitters;
+use crate::field::{LuminanceField, Smooth};
+use crate::image::{LuminanceImage, View};
+use crate::material::Bsdf;
+use crate::query::Ray;
+use crate::rng::Rng;
+use crate::scene::{Channel, Scene};
+
+/// Edge of the squares of pixels that are worked on together.
+const TILE: usize = 8;
+/// Branches of a ray at mirrors and panes that carry less than this share of its light are cut.
+pub const FAINTEST: f64 = 1e-4;
+/// Longest row of mirrors and panes that is followed.
+pub const MOST_BOUNCES: u32 = 24;
+/// Stream of what pictures draw at random; blocks use 1, 2, …, and the field stream 0.
+const STREAM: u64 = u64::MAX - 1;
+/// Patches of the field on large surfaces, and its links: more than a sheet needs, for here the field
+/// is what is seen.
+const PATCHES: f64 = 6000.0;
+const LINKS: u32 = 256;
+
+/// What a picture shows of the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// The stored luminance of patches.
+    Stored,
+    /// Direct light computed at every pixel and the interpolated indirect light.
+    Exact,
+}
+
+/// A field made for pictures, for every channel.
+#[derive(Debug)]
+pub struct Exposure<'s> {
+    emitters: Emitters<'s>,
+    field: LuminanceField,
+    direct: LuminanceField,
+    seed: u64,
+}
+
+/// A field under one light scene.
+#[derive(Debug)]
+pub struct Picture<'e> {
+    emitters: &'e Emitters<'e>,
+    field: &'e LuminanceField,
+    /// Factor of each channel.
+    weights: Vec<f64>,
+    /// Stored luminance of each patch side, cd/m².
+    stored: Vec<f64>,
+    /// Indirect luminance per unit of reflectance, cd/m².
+    indirect: Smooth,
+    seed: u64,
+}
+
+/// Builds the field for pictures of a scene.
+pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
+    let emitters = Emitters::new(scene);
+    let diffuse = |t: usize| scene.bsdf(t as u32).specular(1.0).is_none();
+    let triangles = 0..scene.mesh.triangles.len();
+    let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
+    let effort = Effort { patch_m2: Some(lit_m2 / PATCHES), links: LINKS, ..Effort::default() };
+    let highlights = Highlights::new(&emitters);
+    let (field, direct) = prepare::parts(&emitters, &highlights, &effort, seed);
+    Exposure { emitters, field, direct, seed }
+}
+
+impl Exposure<'_> {
+    /// The field with a factor for each channel.
+    pub fn picture(&self, weights: &[f64]) -> Picture<'_> {
+        let scene = self.emitters.scene;
+        let weighted = |values: &[f64]| values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
+        let patches = self.field.patches();
+        let stored: Vec<f64> = (0..patches.sides()).map(|side| weighted(self.field.at(side))).collect();
+        let albedo = |side: usize| {
+            let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
+            reflectance + transmittance
+        };
+        let indirect: Vec<f64> = (0..patches.sides())
+            .map(|side| {
+                let value = stored[side] - weighted(self.direct.at(side));
+                if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 }
+            })
+            .collect();
+        // Per unit of reflectance opaque surfaces differ by place only, opals by material too.
+        let kind = |side: usize| match scene.bsdf(patches.triangle(side)) {
+            _ if !(albedo(side) > 0.0) => None,
+            Bsdf::Opal { .. } => {
+                let surface = scene.mesh.triangles[patches.triangle(side) as usize].surface;
+                Some(1 + scene.mesh.surfaces[surface as usize].material as u32)
+            }
+            _ => Some(0),
+        };
+        let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind);
+        Picture {
+            emitters: &self.emitters,
+            field: &self.field,
+            weights: weights.to_vec(),
+            stored,
+            indirect: smooth,
+            seed: self.seed,
+        }
+    }
+}
+
+/// What a picture without interval approximates or leaves out, one sentence each.
+pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
+    let mut all = vec![match detail {
+        Detail::Stored => {
+            "Surfaces show the stored luminance of patches: a mean over each patch, with the noise of the field's random links."
+        }
+        Detail::Exact => {
+            "Indirect light is interpolated between stored patches: it has the noise of the field's random links and is blurred and too dark where furniture stands on or against a surface (2 % of the eye's illuminance in an example office)."
+        }
+    }];
+    if detail == Detail::Exact {
+        all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and eight in them; unshadowed light may be off by 0.4 %.");
+    }
+    all.push("Every pixel is looked at in its centre only: edges are not smoothed, and what is narrower than a pixel may be missed.");
+    if (0..scene.mesh.triangles.len() as u32).any(|t| scene.bsdf(t).specular(1.0).is_some()) {
+        all.push("Reflections that carry less than 1e-4 of a pixel's light, and those beyond 24 mirrors or panes, are cut.");
+    }
+    if scene.mesh.surfaces.iter().any(|surface| scene.materials[surface.material].bsdf.lobe().is_some()) {
+        all.push("What glossy surfaces reflect in their lobe is left out: their highlights are missing, and their light on other surfaces is in the stored field only. --blocks shows it.");
+    }
+    all.into_iter().map(str::to_owned).collect()
+}
+
+/// A diffuse place seen by a pixel, and how much of its luminance arrives.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    landing: Landing,
+    share: f64,
+}
+
+/// Everything a pixel's ray meets.
+#[derive(Clone, Debug, Default)]
+struct Sight {
+    /// Luminance of openings and emitting surfaces, cd/m².
+    luminance: f64,
+    places: Vec<Seen>,
+}
+
+/// Takes a picture; `tell` is called with the number of rows done.
+pub fn render(
+    picture: &Picture,
+    view: &View,
+    size: [usize; 2],
+    detail: Detail,
+    tell: &(dyn Fn(usize) + Sync),
+) -> (LuminanceImage, Counts) {
+    let [width, height] = size;
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let bands: Vec<(Vec<f64>, Counts)> = (0..height.div_ceil(TILE))
+        .into_par_iter()
+        .map(|band| {
+            let rows = TILE.min(height - band * TILE);
+            let mut values = vec![0.0; rows * width];
+            let mut counts = Counts::default();
+            for column in (0..width).step_by(TILE) {
+                let corner = [column, band * TILE];
+                let extent = [TILE.min(width - column), rows];
+                tile(picture, view, size, corner, extent, detail, &mut values, &mut counts);
+            }
+            tell(done.fetch_add(rows, std::sync::atomic::Ordering::Relaxed) + rows);
+            (values, counts)
+        })
+        .collect();
+    let mut counts = Counts::default();
+    let mut luminance = Vec::with_capacity(width * height);
+    for (values, count) in bands {
+        luminance.extend(values);
+        counts.add(count);
+    }
+    (LuminanceImage::new(width, height, Some(*view), luminance), counts)
+}
+
+#[allow(clippy::too_many_arguments, reason = "one call, in the loop above")]
+fn tile(
+    picture: &Picture,
+    view: &View,
+    size: [usize; 2],
+    corner: [usize; 2],
+    extent: [usize; 2],
+    detail: Detail,
+    values: &mut [f64],
+    counts: &mut Counts,
+) {
+    let mut sights: [Sight; TILE * TILE] = std::array::from_fn(|_| Sight::default());
+    for (index, sight) in sights.iter_mut().enumerate().take(extent[1] * TILE) {
+        let (column, row) = (index % TILE, index / TILE);
+        if column >= extent[0] {
+            continue;
+        }
+        let at = [(corner[0] + column) as f64 + 0.5, (corner[1] + row) as f64 + 0.5];
+        if let Some(direction) = view.direction(size, at) {
+            sight.look(picture, view.eye, direction, Path::FRESH, counts);
+        }
+    }
+    let out = |index: usize| index / TILE * size[0] + corner[0] + index % TILE;
+    for (index, sight) in sights.iter().enumerate().filter(|(_, sight)| sight.luminance != 0.0) {
+        values[out(index)] += sight.luminance;
+    }
+    for (index, sight) in sights.iter().enumerate() {
+        for place in &sight.places {
+            values[out(index)] += place.share * picture.reflected(&place.landing, detail);
+        }
+    }
+    if detail == Detail::Exact {
+        let number = (corner[1] / TILE) * size[0].div_ceil(TILE) + corner[0] / TILE;
+        let mut rng = Rng::new(picture.seed, STREAM, number as u64);
+        direct::add(picture, &sights, &mut rng, counts, |index, luminance| values[out(index)] += luminance);
+    }
+}
+
+/// A branch of a ray.
+#[derive(Clone, Copy, Debug)]
+struct Path {
+    share: f64,
+    bounces: u32,
+}
+
+impl Path {
+    const FRESH: Self = Self { share: 1.0, bounces: 0 };
+}
+
+impl Sight {
+    /// Follows a ray and its branches.
+    fn look(&mut self, picture: &Picture, origin: DVec3, direction: DVec3, path: Path, counts: &mut Counts) {
+        let scene = picture.emitters.scene;
+        counts.rays += 1;
+        let hit = scene.tracer.closest(origin, direction, &[]);
+        let reach_m = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
+        self.luminance += path.share * picture.openings(origin, direction, reach_m);
+        let Some(hit) = hit else {
+            counts.escaped += 1;
+            return;
+        };
+        let front = scene.tracer.normal(hit.triangle);
+        let normal = if hit.front { front } else { -front };
+        let point = origin + direction * hit.distance_m;
+        let cos = -direction.dot(normal);
+        let Some((reflected, passed)) = scene.bsdf(hit.triangle).specular(cos) else {
+            self.luminance += path.share * picture.emitted(hit.triangle);
+            let (triangle, barycentric) = (hit.triangle, hit.barycentric);
+            let landing = Landing {
+                point,
+                normal,
+                triangle,
+                barycentric,
+                front: hit.front,
+                to_eye: -direction,
+                weight: 1.0,
+            };
+            self.places.push(Seen { landing, share: path.share });
+            return;
+        };
+        let lift = normal * scene.tracer.offset_m();
+        let onward =
+            [(reflected, point + lift, direction + 2.0 * cos * normal), (passed, point - lift, direction)];
+        for (share, origin, direction) in onward {
+            let next = Path { share: path.share * share, bounces: path.bounces + 1 };
+            if next.share < FAINTEST {
+                continue;
+            }
+            if next.bounces > MOST_BOUNCES {
+                counts.cut += 1;
+                continue;
+            }
+            self.look(picture, origin, direction, next, counts);
+        }
+    }
+}
+
+impl Picture<'_> {
+    /// Luminance of all openings along a ray before `reach_m`, cd/m². A luminaire's own housing does
+    /// not hide its opening.
+    fn openings(&self, origin: DVec3, direction: DVec3, reach_m: f64) -> f64 {
+        let scene = self.emitters.scene;
+        let mut sum = 0.0;
+        for (index, luminaire) in scene.luminaires.iter().enumerate() {
+            let weight = self.weights[scene.channel_of[index]];
+            let Some((luminance, distance_m)) = self.emitters.opening_along(index, origin, direction) else {
+                continue;
+            };
+            // The opening may lie *in* the surface that ends the ray.
+            let nearer_m = distance_m - 2.0 * scene.tracer.offset_m();
+            let free = nearer_m < reach_m
+                || !luminaire.body.is_empty()
+                    && scene
+                        .tracer
+                        .closest(origin, direction, &luminaire.body)
+                        .is_none_or(|hit| nearer_m < hit.distance_m);
+            if free {
+                sum += weight * luminance;
+            }
+        }
+        sum
+    }
+
+    /// Luminance that a surface emits itself.
+    fn emitted(&self, triangle: u32) -> f64 {
+        let scene = self.emitters.scene;
+        let emitted = scene.bsdf(triangle).emitted();
+        if !(emitted > 0.0) {
+            return 0.0;
+        }
+        let surface = scene.mesh.triangles[triangle as usize].surface as usize;
+        let own = Channel::Surfaces { material: scene.mesh.surfaces[surface].material };
+        let channel = scene.channels.iter().position(|channel| *channel == own);
+        channel.map_or(0.0, |channel| emitted * self.weights[channel])
+    }
+
+    /// Luminance that the field states at a place: all of it, or the interpolated indirect part.
+    fn reflected(&self, landing: &Landing, detail: Detail) -> f64 {
+        let side = self.field.patches().side_at(landing.triangle, landing.barycentric, landing.front);
+        match detail {
+            Detail::Stored => self.stored[side],
+            Detail::Exact => {
+                let (reflectance, transmittance) = self.emitters.scene.bsdf(landing.triangle).diffuse();
+                (reflectance + transmittance) * self.indirect.at(side, landing.point)
+            }
+        }
+    }
+}
+
+/// One block of unbiased luminances, cd/m²: each pixel's mean over its area, from one random ray in
+/// it. `prepared` needs no demand; blocks are independent, so their scatter is an honest error.
+pub fn replicate(
+    prepared: &Prepared,
+    view: &View,
+    size: [usize; 2],
+    weights: &[f64],
+    block: u64,
+) -> Vec<f64> {
+    let [width, height] = size;
+    let channels = weights.len();
+    let rows: Vec<Vec<f64>> = (0..height)
+        .into_par_iter()
+        .map(|row| {
+            let mut sheet = vec![0.0; channels * PARTS];
+            let mut line = vec![0.0; width];
+            for (column, value) in line.iter_mut().enumerate() {
+                let item = (row * width + column) as u64;
+                let mut rng = Rng::new(prepared.seed, block + 1, item);
+                let [u, v] = rng.uniforms();
+                let Some(direction) = view.direction(size, [column as f64 + u, row as f64 + v]) else {
+                    continue;
+                };
+                sheet.fill(0.0);
+                answer::one_ray(prepared, &Ray { point: view.eye, direction }, &mut rng, &mut sheet);
+                let channel = |k: usize| sheet[k * PARTS..(k + 1) * PARTS].iter().sum::<f64>();
+                *value = (0..channels).map(|k| weights[k] * channel(k)).sum();
+            }
+            line
+        })
+        .collect();
+    rows.concat()
+}

@@ -1,0 +1,270 @@
+//! Direct light at the places a tile of pixels sees. Unshadowed illuminance is exact, and within a
+//! flat tile as smooth as a plane; the visible share of each opening is sampled, once a pixel where
+//! all of it is seen or none, more often in the half-shadows that a few trial rays find.
+//!
+//!   L = (ρ/π) Σ E_unshadowed · Σ V I cos/d² / Σ I cos/d²
+//!
+//! The ratio is exact where nothing shades and where everything does, and never negative.
+
+use std::f64::consts::FRAC_1_PI;
+
+use glam::DVec3;
+
+use super::{Counts, Picture, Seen, Sight, TILE};
+use crate::emitters::{Arrival, Emitters, Source, unshadowed};
+use crate::query::Kernel;
+use crate::rng::Rng;
+
+/// Shadow rays a luminaire and pixel in half-shadows.
+const HALF_SHADOW: u32 = 8;
+/// Trial rays of a tile towards each luminaire: points of the opening.
+const TRIALS: [[f64; 2]; 5] = [[0.5, 0.5], [0.06, 0.06], [0.94, 0.06], [0.06, 0.94], [0.94, 0.94]];
+/// Nodes of the Gauss rule with two points, and of the same rule on both halves.
+const GAUSS_2: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
+const GAUSS_4: [f64; 4] =
+    [0.105_662_432_702_593_57, 0.394_337_567_297_406_4, 0.605_662_432_702_593_6, 0.894_337_567_297_406_4];
+/// Opening radii within which the finer rule is used, and the error-controlled one.
+const NEAR: f64 = 5.0;
+const AT_HAND: f64 = 1.5;
+/// Largest error of a plane through the unshadowed illuminances of a tile, checked at a fourth point.
+const FLAT: f64 = 0.004;
+
+/// Points of an opening for the pixels of a tile: Roberts' additive sequence with the plastic number,
+/// randomly shifted, so that each point is uniform and neighbours in the sequence lie far apart.
+#[derive(Clone, Copy)]
+struct Points {
+    shift: [f64; 2],
+}
+
+impl Points {
+    fn point(self, number: u32) -> [f64; 2] {
+        const STEP: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+        std::array::from_fn(|k| (self.shift[k] + f64::from(number) * STEP[k]).fract())
+    }
+}
+
+/// A place with the side on which light arrives.
+struct Spot {
+    /// Index of the pixel within the tile.
+    pixel: usize,
+    /// Where shadow rays start.
+    origin: DVec3,
+    normal: DVec3,
+    /// Luminance in the pixel per illuminance, cd/m²/lx.
+    factor: f64,
+}
+
+/// Adds the direct light of a tile, pixel by pixel.
+pub(super) fn add(
+    picture: &Picture,
+    sights: &[Sight; TILE * TILE],
+    rng: &mut Rng,
+    counts: &mut Counts,
+    mut put: impl FnMut(usize, f64),
+) {
+    let scene = picture.emitters.scene;
+    let mut spots: Vec<Spot> = Vec::with_capacity(TILE * TILE);
+    for (pixel, sight) in sights.iter().enumerate() {
+        for Seen { landing, share } in &sight.places {
+            let (reflectance, transmittance) = scene.bsdf(landing.triangle).diffuse();
+            for (albedo, same_side) in [(reflectance, true), (transmittance, false)] {
+                if albedo > 0.0 {
+                    let normal = if same_side { landing.normal } else { -landing.normal };
+                    let origin = landing.origin(scene, same_side);
+                    spots.push(Spot { pixel, origin, normal, factor: share * albedo * FRAC_1_PI });
+                }
+            }
+        }
+    }
+    if spots.is_empty() {
+        return;
+    }
+    let flat = is_flat(&spots);
+    for source in &picture.emitters.sources {
+        let weight = picture.weights[source.channel];
+        if !(weight > 0.0) {
+            continue;
+        }
+        let points = Points { shift: rng.uniforms() };
+        if source.mirror.is_some() {
+            add_image(picture, source, &spots, flat, points, counts, &mut |pixel, luminance| {
+                put(pixel, weight * luminance);
+            });
+        } else {
+            let exact = unshadowed_lx(picture, source, &spots, flat);
+            if exact.iter().all(|lx| !(*lx > 0.0)) {
+                continue;
+            }
+            let rays = rays_wanted(picture, source, &spots, counts);
+            for (index, (spot, lx)) in spots.iter().zip(exact).enumerate() {
+                if lx > 0.0 {
+                    let visible = visible_share(picture, source, spot, index as u32, rays, points, counts);
+                    put(spot.pixel, weight * spot.factor * lx * visible);
+                }
+            }
+        }
+    }
+}
+
+/// Whether a whole tile sees one plane, each pixel once.
+fn is_flat(spots: &[Spot]) -> bool {
+    let first = &spots[0];
+    spots.len() == TILE * TILE
+        && spots.iter().enumerate().all(|(index, spot)| {
+            spot.pixel == index
+                && spot.normal.dot(first.normal) > 1.0 - 1e-9
+                && first.normal.dot(spot.origin - first.origin).abs() < 1e-6
+        })
+}
+
+/// Unshadowed illuminance of every spot, lx.
+fn unshadowed_lx(picture: &Picture, source: &Source, spots: &[Spot], flat: bool) -> Vec<f64> {
+    let exact = |spot: &Spot| quick_unshadowed(picture.emitters, source, spot.origin, spot.normal);
+    if flat && let Some(plane) = plane_through(spots, &exact) {
+        return plane;
+    }
+    spots.iter().map(exact).collect()
+}
+
+/// Unshadowed illuminance on a plane, lx: Lambert's formula for uniform polygons; a Gauss rule of
+/// 2 × 2 points for tabulated openings, 4 × 4 near them or where the plane cuts them, and the
+/// error-controlled one where the opening is at hand.
+fn quick_unshadowed(emitters: &Emitters, source: &Source, point: DVec3, normal: DVec3) -> f64 {
+    let towards = source.position - point;
+    let distance_m = towards.length();
+    let uniform = emitters.luminaire(source).kind.distribution.lambert_flux().is_some();
+    if uniform || source.is_point() || distance_m < AT_HAND * source.radius_m {
+        return unshadowed(emitters, source, point, &Kernel::Planar { normal });
+    }
+    let cut = normal.dot(towards).abs() < source.radius_m;
+    let nodes: &[f64] = if cut || distance_m < NEAR * source.radius_m { &GAUSS_4 } else { &GAUSS_2 };
+    let mut sum = 0.0;
+    for &u in nodes {
+        for &v in nodes {
+            let facing = |direction: DVec3| normal.dot(direction) > 0.0;
+            if let Some(arrival) = emitters.arrival_if(source, point, [u, v], facing) {
+                sum += arrival.normal_lx * normal.dot(arrival.direction);
+            }
+        }
+    }
+    sum / (nodes.len() * nodes.len()) as f64
+}
+
+/// The affine function of place through three corners of a flat tile, if it also fits the fourth.
+fn plane_through(spots: &[Spot], exact: &impl Fn(&Spot) -> f64) -> Option<Vec<f64>> {
+    let corners = [0, TILE - 1, TILE * (TILE - 1), TILE * TILE - 1].map(|index| &spots[index]);
+    let lx = corners.map(exact);
+    let most = lx.iter().copied().fold(0.0, f64::max);
+    if lx.iter().all(|lx| *lx == 0.0) {
+        return Some(vec![0.0; spots.len()]);
+    }
+    let origin = corners[0].origin;
+    let (e, f) = (corners[1].origin - origin, corners[2].origin - origin);
+    let (ee, ef, ff) = (e.dot(e), e.dot(f), f.dot(f));
+    let determinant = ee * ff - ef * ef;
+    if !(determinant > 1e-6 * ee * ff) {
+        return None;
+    }
+    let at = |place: DVec3| {
+        let d = place - origin;
+        let (a, b) = (d.dot(e), d.dot(f));
+        let (s, t) = ((a * ff - b * ef) / determinant, (b * ee - a * ef) / determinant);
+        lx[0] + s * (lx[1] - lx[0]) + t * (lx[2] - lx[0])
+    };
+    let off = (at(corners[3].origin) - lx[3]).abs();
+    if lx.contains(&0.0) || off > FLAT * most {
+        return None;
+    }
+    Some(spots.iter().map(|spot| at(spot.origin).max(0.0)).collect())
+}
+
+/// Shadow rays per pixel, from trial rays of the spots at the tile's middle and corners.
+fn rays_wanted(picture: &Picture, source: &Source, spots: &[Spot], counts: &mut Counts) -> u32 {
+    if source.is_point() {
+        return 1;
+    }
+    let (mut seen, mut hidden) = (false, false);
+    for place in [0, spots.len() / 2, spots.len() - 1] {
+        let spot = &spots[place];
+        for u in TRIALS {
+            let facing = |direction: DVec3| spot.normal.dot(direction) > 0.0;
+            let Some(arrival) = picture.emitters.arrival_if(source, spot.origin, u, facing) else { continue };
+            counts.rays += 1;
+            if picture.emitters.passed(source, spot.origin, &arrival) > 0.0 {
+                seen = true;
+            } else {
+                hidden = true;
+            }
+            if seen && hidden {
+                return HALF_SHADOW;
+            }
+        }
+    }
+    1
+}
+
+/// Share of a luminaire's light that reaches a spot, panes on the way included.
+fn visible_share(
+    picture: &Picture,
+    source: &Source,
+    spot: &Spot,
+    number: u32,
+    rays: u32,
+    points: Points,
+    counts: &mut Counts,
+) -> f64 {
+    if rays == 1 {
+        // One ray is all seen or not: how much light it would carry does not matter.
+        let u = points.point(number);
+        let Some((direction, distance_m)) = picture.emitters.towards(source, spot.origin, u) else {
+            return 1.0;
+        };
+        counts.rays += 1;
+        let arrival = Arrival { direction, distance_m, normal_lx: 0.0, weight: 1.0 };
+        return picture.emitters.passed(source, spot.origin, &arrival);
+    }
+    let (mut whole, mut passed) = (0.0, 0.0);
+    for ray in 0..rays {
+        let u = points.point(number * rays + ray);
+        let facing = |direction: DVec3| spot.normal.dot(direction) > 0.0;
+        let Some(arrival) = picture.emitters.arrival_if(source, spot.origin, u, facing) else { continue };
+        let light = arrival.normal_lx * spot.normal.dot(arrival.direction);
+        counts.rays += 1;
+        whole += light;
+        passed += light * picture.emitters.passed(source, spot.origin, &arrival);
+    }
+    if whole > 0.0 { passed / whole } else { 1.0 }
+}
+
+/// Light by one reflection in a plane: sampled at every pixel that may see the image.
+fn add_image(
+    picture: &Picture,
+    source: &Source,
+    spots: &[Spot],
+    flat: bool,
+    points: Points,
+    counts: &mut Counts,
+    put: &mut impl FnMut(usize, f64),
+) {
+    let emitters = picture.emitters;
+    if flat {
+        let corners = [0, TILE - 1, TILE * TILE / 2 + TILE / 2, TILE * (TILE - 1), TILE * TILE - 1];
+        if corners.iter().all(|&index| !emitters.may_show(source, spots[index].origin)) {
+            return;
+        }
+    }
+    for (number, spot) in spots.iter().enumerate() {
+        if !emitters.may_show(source, spot.origin) {
+            continue;
+        }
+        let u = if !source.is_point() { points.point(number as u32) } else { [0.5, 0.5] };
+        let facing = |direction: DVec3| spot.normal.dot(direction) > 0.0;
+        let Some(arrival) = emitters.arrival_if(source, spot.origin, u, facing) else { continue };
+        counts.rays += 2;
+        let passed = emitters.passed(source, spot.origin, &arrival);
+        let light = arrival.normal_lx * spot.normal.dot(arrival.direction) * passed;
+        if light > 0.0 {
+            put(spot.pixel, spot.factor * light);
+        }
+    }
+}

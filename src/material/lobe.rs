@@ -78,16 +78,6 @@ impl Lobe {
             Self::Ggx(lobe) => 0.5 / (lobe.alpha * lobe.alpha),
         }
     }
-
-    /// What the albedo never exceeds.
-    pub fn bound(&self) -> f64 {
-        match self {
-            Self::Phong(lobe) => lobe.specular,
-            Self::PhongPaper(lobe) => lobe.specular,
-            Self::Ward(lobe) => lobe.specular,
-            Self::Ggx(lobe) => lobe.f90,
-        }
-    }
 }
 
 /// Intervals of the table of albedos.

@@ -86,9 +86,8 @@ impl Bsdf {
             | Self::Emitter { reflectance, .. } => reflectance < 1.0,
             Self::Opal { reflectance, transmittance } => reflectance + transmittance < 1.0,
             Self::Glass(pane) => pane.absorbs(),
-            Self::Glossy { reflectance, ref lobe } => {
-                reflectance + lobe.bound() < 1.0 || matches!(lobe, Lobe::PhongPaper(_))
-            }
+            // Every lobe loses what would leave below the horizon or between facets.
+            Self::Glossy { .. } => self.albedo(0.5) < 1.0,
         }
     }
 

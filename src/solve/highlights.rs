@@ -135,7 +135,7 @@ mod tests {
     fn draws_follow_their_density() {
         let bundle = |axis: DVec3, concentration, up_to, share| Bundle { axis, concentration, up_to, share };
         let bundles = [bundle(DVec3::Z, 30.0, 0.25, 0.25), bundle(DVec3::new(0.6, 0.0, 0.8), 4.0, 1.0, 0.75)];
-        let (n, mut rng) = (400u32, Rng::new(1, 2, 3));
+        let (n, mut rng) = (1000u32, Rng::new(1, 2, 3));
         let (mut whole, mut moment) = (0.0, DVec3::ZERO);
         for i in 0..n * n {
             let at = |k: u32| (f64::from(k) + 0.5) / f64::from(n);

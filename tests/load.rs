@@ -666,8 +666,11 @@ fn the_shell_of_a_cad_room_is_told_from_its_furniture() {
         println!("{:?} {:?} {:?}", world.rooms[0], furniture, project.biases);
         assert!(furniture.contains(&"large.box") && furniture.contains(&"small.box"));
         assert!(!furniture.contains(&"cornell.box.cbox.Material.002"));
-        assert!((world.rooms[0].reflectances[2] - 0.4).abs() < 1e-6);
-        assert!((world.rooms[0].reflectances[0] - 0.4).abs() < 1e-6);
+        // Y = 0.4 with a written roughness: 0.96 Y diffuse and a lobe of 0.04 less what facets hide.
+        for part in [0, 2] {
+            let reflectance = world.rooms[0].reflectances[part];
+            assert!((0.414..0.424).contains(&reflectance), "{reflectance}");
+        }
     }
 }
 

@@ -18,6 +18,10 @@ use crate::quantity::{Property, Quantity, Statistic};
 use crate::scene::Channel;
 use crate::units::Undefined;
 
+/// Luminance in cd/m² up to which a shining surface (a screen, say) leaves the UGR table of a room valid;
+/// brighter ones would dazzle without the method's knowing. A convention of this program.
+const BRIGHT_SURFACE_CD_M2: f64 = 500.0;
+
 /// Everything that is measured on one world after some blocks.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
@@ -156,12 +160,17 @@ impl Context<'_> {
                 (area::gauge_of_task(&own, &task, alpha), "maintained".into(), None)
             }
             Subject::UgrTable(shr) => {
-                let note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
-                (self.worst_table(room, *shr).map_or_else(Gauged::undefined, Gauged::exact), note, None)
+                let mut note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
+                for said in self.table_notes(room, *shr) {
+                    note = format!("{note}; {said}");
+                }
+                let value = self.worst_table(room, *shr, planned.light_scene);
+                (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
             }
             Subject::DiscomfortTable(shr) => {
                 let note = format!("M = 10^((UGR + 4.8)/16), UGR by the table method, SHR {shr}");
-                let value = self.worst_table(room, *shr).map(crate::glare::discomfort::index_m);
+                let value =
+                    self.worst_table(room, *shr, planned.light_scene).map(crate::glare::discomfort::index_m);
                 (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
             }
             Subject::ColourRendering => {
@@ -191,10 +200,37 @@ impl Context<'_> {
         }
     }
 
-    /// The worst table value of a room at a spacing-to-height ratio.
-    fn worst_table(&self, room: usize, shr: f64) -> Result<f64, Undefined> {
+    /// The worst table value of a room at a spacing-to-height ratio. The method knows luminaires only:
+    /// where other surfaces shine brightly it says nothing.
+    fn worst_table(&self, room: usize, shr: f64, light_scene: usize) -> Result<f64, Undefined> {
+        let weights = self.weights(light_scene, &self.world.rooms[room], false);
+        let scene = &self.world.scene;
+        let bright = scene.channels.iter().zip(&weights).any(|(channel, weight)| match channel {
+            Channel::Surfaces { material } => {
+                weight * scene.materials[*material].bsdf.emitted() > BRIGHT_SURFACE_CD_M2
+            }
+            Channel::Luminaires { .. } => false,
+        });
+        if bright {
+            return Err(Undefined::because(
+                "table method not applicable: bright luminous surfaces shine in the room",
+            ));
+        }
+        room_ugr::worst(self.table(room, shr))
+    }
+
+    /// The table values of a room at a spacing-to-height ratio.
+    fn table(&self, room: usize, shr: f64) -> &[UgrTableOutcome] {
         let of_ratio = self.tables[room].iter().find(|(ratio, _)| ratio.to_bits() == shr.to_bits());
-        room_ugr::worst(of_ratio.map_or(&[], |(_, table)| table))
+        of_ratio.map_or(&[], |(_, table)| table)
+    }
+
+    /// What had to be taken otherwise than it is, each once.
+    fn table_notes(&self, room: usize, shr: f64) -> Vec<&String> {
+        let mut notes: Vec<&String> = self.table(room, shr).iter().flat_map(|table| &table.notes).collect();
+        notes.sort();
+        notes.dedup();
+        notes
     }
 
     /// A property declared for a luminaire: under its type's name, under the room's, or in its file.
@@ -312,7 +348,12 @@ impl Context<'_> {
             flux,
             ugr_table: self.tables[index].first().map_or_else(Vec::new, |(_, table)| table.clone()),
             power: self.power(index),
-            dimming: judge::dimming(&self.requirements(index)),
+            // Surfaces that shine of themselves are not dimmed with the luminaires.
+            dimming: if self.world.scene.channels.iter().any(|c| matches!(c, Channel::Surfaces { .. })) {
+                None
+            } else {
+                judge::dimming(&self.requirements(index))
+            },
         };
         (outcome, values)
     }

@@ -254,6 +254,10 @@ impl<'s> Emitters<'s> {
         else {
             return 0.0;
         };
+        // Its own light passes a luminaire's body and is not reflected by it.
+        if blind.contains(&tracer.surface(triangle)) {
+            return 0.0;
+        }
         let cos = arrival.direction.dot(mirror.normal).abs();
         let Some((reflectance, _)) = self.scene.bsdf(triangle).specular(cos) else { return 0.0 };
         let lift = tracer.offset_m();

@@ -74,7 +74,7 @@ pub fn blocks_needed(gauged: &Gauged, quantity: Quantity, bound: Bound, blocks: 
 /// its interval too, and uniformities and ratios do not change. UGR only falls, which is not counted.
 /// `None` where no illuminance is required from below, or one has no value.
 pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
-    let is_level = |r: &&Requirement| r.quantity.unit() == "lx" && !r.statistic.is_ratio();
+    let is_level = |r: &&Requirement| matches!(r.quantity.unit(), "lx" | "cd/m²") && !r.statistic.is_ratio();
     let judged = |r: &&Requirement| {
         matches!(r.verdict, Verdict::Pass | Verdict::Fail | Verdict::Undecided | Verdict::Undefined)
     };

@@ -223,9 +223,13 @@ impl Standard {
     pub fn requirements_at(&self, row: &Row, modified_lx: Option<f64>) -> Vec<Limit> {
         let mut limits = row.limits.clone();
         if let Some(task) = row.illuminance() {
-            let task = Limit { bound: modified_lx.map_or(task.bound, Bound::Min), ..*task };
+            let (bound, verified) = match modified_lx {
+                None => (task.bound, task.verified),
+                Some(lx) => (Bound::Min(lx), self.standing_of_modified(row, task, lx)),
+            };
+            let task = Limit { bound, verified, ..*task };
             if let Some(own) = limits.iter_mut().find(|limit| limit.is_task_level()) {
-                own.bound = task.bound;
+                (own.bound, own.verified) = (bound, verified);
             }
             limits.extend(self.around(&task));
         }
@@ -249,6 +253,16 @@ impl Standard {
             }
         }
         limits
+    }
+
+    /// How well a modified illuminance is known: as the row's own value for difficult conditions, or no
+    /// better than the task's and the scale along which it was found.
+    fn standing_of_modified(&self, row: &Row, task: &Limit, lx: f64) -> Verified {
+        match (row.modified_lx, &self.application.illuminance_scale_lx) {
+            (Some((own_lx, verified)), _) if (own_lx - lx).abs() < 1e-9 => verified,
+            (_, Some(scale)) => task.verified.min(scale.verified),
+            (_, None) => Verified::Unverified,
+        }
     }
 
     /// Limits of surrounding and background that follow from a task's mean illuminance.

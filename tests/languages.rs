@@ -38,6 +38,9 @@ fn text_of(page: &str) -> String {
     text
 }
 
+/// How the maker of the bundled photometric files is called in the luminaire schedule.
+const MAKER: &str = "gershun example scenes";
+
 /// Runs of Latin words that are long enough to be a sentence.
 fn latin_sentences(text: &str) -> Vec<String> {
     let mut sentences = Vec::new();
@@ -48,8 +51,9 @@ fn latin_sentences(text: &str) -> Vec<String> {
             if bare.chars().all(|c| c.is_ascii_alphabetic() || c == '-') && !bare.is_empty() {
                 run.push(word);
             } else {
-                if run.len() >= SENTENCE {
-                    sentences.push(run.join(" "));
+                let said = run.join(" ");
+                if run.len() >= SENTENCE && !said.starts_with(MAKER) {
+                    sentences.push(said);
                 }
                 run.clear();
             }

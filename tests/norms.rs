@@ -169,6 +169,8 @@ fn sports_have_odd_grids_and_a_total_area_that_is_compared_with_the_court() {
     let outcome = solved(&room("en-12193-2018", court));
     for area in &outcome.rooms[0].areas {
         assert!(area.grid.columns % 2 == 1 && area.grid.rows % 2 == 1, "{}", area.name);
+        // The total area holds the court.
+        assert!(area.grid.points.iter().all(|point| point.excluded.is_none()), "{}", area.name);
     }
     let share = of(&outcome, "Total", Statistic::OfTask)[0];
     let mean = |area: &str| {

@@ -37,6 +37,8 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
     for spec in specs.iter_mut().filter(|spec| sports && spec.rule == GridRule::En) {
         spec.rule = GridRule::EnSports;
     }
+    let is_total =
+        project.norm.as_ref().is_some_and(|norm| norm.standard.application.surrounding_of_task.is_some());
     for (index, spec) in specs.iter().enumerate() {
         let mut grid = match lay(spec, &world.rooms[spec.room], &world.scene) {
             Ok(grid) => grid,
@@ -45,7 +47,7 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
                 continue;
             }
         };
-        exclude(&mut grid, spec, index, &specs, &world.scene);
+        exclude(&mut grid, spec, index, &specs, &world.scene, is_total);
         if grid.points.iter().all(|point| point.excluded.is_some()) {
             errors.push(PlanError::NoPoints { area: spec.name.clone(), place: spec.written.clone() });
             continue;
@@ -260,13 +262,22 @@ fn on_surface(scene: &Scene, surface: u32, at: DVec3) -> bool {
 
 /// Marks points inside closed furniture, and points of surroundings and backgrounds that belong to
 /// a task or surrounding area.
-fn exclude(grid: &mut Grid, spec: &AreaSpec, index: usize, specs: &[AreaSpec], scene: &Scene) {
+///
+/// Where a norm compares the surrounding's mean with the task's, it is the total area, task included.
+fn exclude(
+    grid: &mut Grid,
+    spec: &AreaSpec,
+    index: usize,
+    specs: &[AreaSpec],
+    scene: &Scene,
+    is_total: bool,
+) {
     let others: Vec<Vec<DVec2>> = specs
         .iter()
         .enumerate()
         .filter(|&(other, area)| {
             let owns = match spec.kind {
-                AreaKind::Surrounding => area.kind == AreaKind::Task,
+                AreaKind::Surrounding => area.kind == AreaKind::Task && !is_total,
                 AreaKind::Background => matches!(area.kind, AreaKind::Task | AreaKind::Surrounding),
                 AreaKind::Task | AreaKind::Surface | AreaKind::Volume => false,
             };

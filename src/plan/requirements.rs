@@ -169,9 +169,16 @@ fn of_norm(
             }
             required.push(one);
         }
+        if own.is_some() && own != Some(&row.reference) {
+            for unknown in row.unknown.iter().filter(|unknown| unknown.zone == zone) {
+                let mut one = unknown_limit(standard, row, unknown);
+                one.subject_name.clone_from(&area.name);
+                required.push(one);
+            }
+        }
     }
     for (number, row) in rows.into_iter().enumerate() {
-        let is_own = number == 0 && own == Some(&row.reference);
+        let is_own = own.is_none_or(|own| number == 0 && *own == row.reference);
         required.extend(whole_room(norm, world, index, room, planned, row, is_own));
         // A second row repeats what the first asks of the room: once is enough.
         let mut seen: Vec<PlannedRequirement> = Vec::new();
@@ -261,17 +268,22 @@ fn whole_room(
             required.push(requirement(standard, row, limit, subject, &name));
         }
     }
-    for Unknown { column, zone, quantity, statistic } in &row.unknown {
-        let of_room = matches!(zone, Zone::Room | Zone::Declared);
+    for unknown in &row.unknown {
+        let of_room = matches!(unknown.zone, Zone::Room | Zone::Declared);
         if !is_own && !of_room {
             continue;
         }
-        let reason = format!("the norm's file has no value of {column} for row {}", row.reference);
-        let mut one = unassessed(standard, &row.reference, *quantity, *statistic, reason);
-        one.subject_name = if of_room { room.name.clone() } else { zone_name(*zone).to_owned() };
+        let mut one = unknown_limit(standard, row, unknown);
+        one.subject_name = if of_room { room.name.clone() } else { zone_name(unknown.zone).to_owned() };
         required.push(one);
     }
     required
+}
+
+/// What the norm limits and its file does not know.
+fn unknown_limit(standard: &Standard, row: &Row, unknown: &Unknown) -> PlannedRequirement {
+    let reason = format!("the norm's file has no value of {} for row {}", unknown.column, row.reference);
+    unassessed(standard, &row.reference, unknown.quantity, unknown.statistic, reason)
 }
 
 /// A norm that judges glare at observers: every one of the room, by its worst direction.

@@ -241,8 +241,8 @@ fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
         .receivers
         .par_iter()
         .flat_map_iter(|receiver| {
-            // Not lifted: nothing is traced here, and 1000 cd at 2 m are 250 lx to the last digit.
-            let point = receiver.point;
+            // Lifted as shadow rays are, so that what is wholly shaded gets nothing to the last digit.
+            let point = lifted(emitters.scene, receiver.point, receiver.lift);
             receiver.kernels.iter().map(move |kernel| {
                 let own = &emitters.sources[..emitters.scene.luminaires.len()];
                 own.iter().map(|source| unshadowed(emitters, source, point, kernel)).collect()

@@ -102,14 +102,25 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("{}: up to {} % of the value; the margin is {} %", "{}: до {} % значения; запас {} %"),
     ("{}: {}; the margin is {} %", "{}: {}; запас {} %"),
     // Biases of loading.
-    ("cameras are not rendered by check", "камеры командой check не рассчитываются"),
     (
         "glare maps are computed by `gershun glare`, not by check",
         "карты блёскости рассчитывает команда `gershun glare`, а не check",
     ),
     (
-        "{}: light sources of the glTF file are ignored; luminaires come from the project",
-        "{}: источники света файла glTF не используются; светильники задаются в проекте",
+        "{} light sources of {} are ignored ({}); `lights = true` in [scene] makes them luminaires",
+        "источников света: {} – файла {} не используются ({}); `lights = true` в [scene] делает их светильниками",
+    ),
+    (
+        "{}: its range of {} m is ignored, light goes on",
+        "{}: его дальность {} м не учитывается, свет идёт дальше",
+    ),
+    (
+        "{} is directional and ignored: daylight is not computed",
+        "{} – направленный источник, не используется: естественный свет не рассчитывается",
+    ),
+    (
+        "luminaire \"{}\": up to {} % of its luminous body lies behind a surface ({} placed so), and that light is lost; its centre hangs at `at`, so lower it by half its luminous height, name its housing in `body`, or give it a flat `area`",
+        "светильник «{}»: до {} % его светящегося тела лежит за поверхностью (размещено так: {}), этот свет теряется; в `at` задаётся центр тела: опустите его на половину светящейся высоты, назовите корпус в `body` или задайте плоскую `area`",
     ),
     ("{}: morph targets of the glTF file are ignored", "{}: морфинг-цели файла glTF не используются"),
     (
@@ -215,6 +226,18 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "table method not applicable: the room is not rectangular",
         "табличный метод неприменим: помещение не прямоугольное",
     ),
+    (
+        "table method not applicable: bright luminous surfaces shine in the room",
+        "табличный метод неприменим: в помещении есть яркие светящиеся поверхности",
+    ),
+    (
+        "the norm asks for daylight; gershun computes none",
+        "норма требует естественного света; gershun его не рассчитывает",
+    ),
+    (
+        "table method CIE 190, SHR {}, worst direction, initial flux; {}",
+        "табличный метод CIE 190, SHR {}, худшее направление, начальный поток; {}",
+    ),
     ("the UGR table method does not apply: {}", "табличный метод UGR неприменим: {}"),
     ("table not applicable: asymmetric luminaire", "таблица неприменима: светильник несимметричный"),
     (
@@ -269,7 +292,7 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("nothing of it is judged yet: {}", "пока не оценивается: {}"),
     ("the norm's row has no limit", "строка нормы не содержит предела"),
     ("the quantity is undefined where no light arrives", "величина не определена там, куда не падает свет"),
-    ("this quantity is not measured on an area", "эта величина на области не измеряется"),
+    ("{} is not measured on this area", "{} на этой области не измеряется"),
     (
         "a room has no grid of its own: name one of its areas",
         "у помещения нет собственной сетки: назовите одну из его областей",
@@ -280,8 +303,20 @@ pub const SENTENCES: &[(&str, &str)] = &[
 pub fn said(lang: Lang, text: &str) -> Cow<'_, str> {
     match lang {
         Lang::En => Cow::Borrowed(text),
-        Lang::Ru => russian(text).map_or(Cow::Borrowed(text), Cow::Owned),
+        Lang::Ru => russian(text).or_else(|| one_by_one(text)).map_or(Cow::Borrowed(text), Cow::Owned),
     }
+}
+
+/// A list of sentences, each looked up on its own; `None` where none is known.
+fn one_by_one(text: &str) -> Option<String> {
+    let parts: Vec<&str> = text.split("; ").collect();
+    let found: Vec<Option<String>> = parts.iter().map(|part| russian(part)).collect();
+    if parts.len() < 2 || found.iter().all(Option::is_none) {
+        return None;
+    }
+    let said: Vec<String> =
+        parts.iter().zip(found).map(|(part, found)| found.unwrap_or_else(|| (*part).to_owned())).collect();
+    Some(said.join("; "))
 }
 
 fn russian(text: &str) -> Option<String> {
@@ -305,7 +340,7 @@ fn part_in_russian(part: &str) -> String {
     if part.parse::<f64>().is_ok() {
         return part.replace('.', ",");
     }
-    russian(part).unwrap_or_else(|| part.to_owned())
+    russian(part).or_else(|| one_by_one(part)).unwrap_or_else(|| part.to_owned())
 }
 
 /// What stands at each `{}` of the pattern; `None` if the text does not follow it.
@@ -377,7 +412,8 @@ mod tests {
     #[test]
     fn every_pattern_is_said_somewhere() {
         let mut source = String::new();
-        let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+        let mut folders =
+            ["src", "standards"].map(|f| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(f)).to_vec();
         while let Some(folder) = folders.pop() {
             for entry in std::fs::read_dir(folder).expect("src is there").flatten() {
                 if entry.path().is_dir() {

@@ -65,11 +65,15 @@ pub(super) fn follow(
     for _ in 0..MOST_BOUNCES {
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
-        let reach_m = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
         for luminaire in 0..scene.luminaires.len() {
-            if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction)
-                && distance_m - 2.0 * lift < reach_m
-            {
+            let met = emitters.opening_along(luminaire, origin, direction);
+            if let Some((luminance, distance_m)) = met {
+                // A luminaire's own body does not hide it.
+                let seen = emitters.uncovered(luminaire, (origin, direction), distance_m, hit.as_ref());
+                if !(seen > 0.0) {
+                    continue;
+                }
+                let luminance = luminance * seen;
                 let placed = &scene.luminaires[luminaire];
                 let cos = placed.world_from_luminaire.z_axis.dot(direction).abs();
                 let (area_m2, sealed) = (placed.kind.opening.area_m2(), !placed.body.is_empty());

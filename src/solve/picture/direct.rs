@@ -47,6 +47,8 @@ impl Points {
 struct Spot {
     /// Index of the pixel within the tile.
     pixel: usize,
+    /// Triangle on which it lies.
+    triangle: u32,
     /// Where shadow rays start.
     origin: DVec3,
     normal: DVec3,
@@ -71,7 +73,8 @@ pub(super) fn add(
                 if albedo > 0.0 {
                     let normal = if same_side { landing.normal } else { -landing.normal };
                     let origin = landing.origin(scene, same_side);
-                    spots.push(Spot { pixel, origin, normal, factor: share * albedo * FRAC_1_PI });
+                    let factor = share * albedo * FRAC_1_PI;
+                    spots.push(Spot { pixel, triangle: landing.triangle, origin, normal, factor });
                 }
             }
         }
@@ -97,7 +100,7 @@ pub(super) fn add(
             }
             let rays = rays_wanted(picture, source, &spots, counts);
             for (index, (spot, lx)) in spots.iter().zip(exact).enumerate() {
-                if lx > 0.0 {
+                if lx > 0.0 && picture.emitters.lights(source, spot.triangle) {
                     let visible = visible_share(picture, source, spot, index as u32, rays, points, counts);
                     put(spot.pixel, weight * spot.factor * lx * visible);
                 }
@@ -133,7 +136,9 @@ fn quick_unshadowed(emitters: &Emitters, source: &Source, point: DVec3, normal: 
     let towards = source.position - point;
     let distance_m = towards.length();
     let uniform = emitters.luminaire(source).kind.distribution.lambert_flux().is_some();
-    if uniform || source.is_point() || distance_m < AT_HAND * source.radius_m {
+    // A rule over all pieces of a body would see jumps between them.
+    let in_pieces = emitters.luminaire(source).kind.opening.pieces() > 0;
+    if uniform || in_pieces || source.is_point() || distance_m < AT_HAND * source.radius_m {
         return unshadowed(emitters, source, point, &Kernel::Planar { normal });
     }
     let cut = normal.dot(towards).abs() < source.radius_m;
@@ -257,7 +262,7 @@ fn add_image(
         if !emitters.may_show(source, spot.origin) {
             continue;
         }
-        let u = if !source.is_point() { points.point(number as u32) } else { [0.5, 0.5] };
+        let u = if source.is_point() { [0.5, 0.5] } else { points.point(number as u32) };
         let facing = |direction: DVec3| spot.normal.dot(direction) > 0.0;
         let Some(arrival) = emitters.arrival_if(source, spot.origin, u, facing) else { continue };
         counts.rays += 2;

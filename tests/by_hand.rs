@@ -46,6 +46,8 @@ fn a_point_source_gives_its_candelas_over_the_distance_squared() {
     let rest = spot("below", [2.0, 2.0, 0.75], r#""E_h""#) + &spot("aside", [0.5, 2.0, 0.75], r#""E_h""#);
     let outcome = few(&black("", "", &rest));
     exact("below", point(&outcome, "below", "E_h"), 250.0);
+    // To the last digits: a receiver in free space is not moved.
+    assert!((point(&outcome, "below", "E_h").value - 250.0).abs() < 1e-9);
     exact("aside", point(&outcome, "aside", "E_h"), 1000.0 * 2.0 / 6.25f64.powf(1.5));
 }
 

@@ -17,7 +17,7 @@ const G_STAR: [[Option<f64>; 4]; 6] = [
     [Some(350.0), Some(100.0), Some(10.0), Some(0.0)],
     [Some(350.0), Some(100.0), Some(0.0), Some(0.0)],
 ];
-/// γ from which the columns of [`G_STAR`] count, degrees.
+/// γ from which the columns of the G* table count, degrees.
 pub const G_GAMMAS_DEG: [f64; 4] = [70.0, 80.0, 90.0, 95.0];
 /// Largest glare index for D1 … D6, cd/m.
 const D_CLASSES: [f64; 6] = [7000.0, 5500.0, 4000.0, 2000.0, 1000.0, 500.0];

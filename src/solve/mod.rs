@@ -251,7 +251,10 @@ fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The point moved off a surface it may lie on.
+/// The point moved off a surface it lies on; one in free space stays where it is.
 fn lifted(scene: &Scene, point: DVec3, lift: DVec3) -> DVec3 {
-    point + lift * scene.tracer.offset_m()
+    let offset_m = scene.tracer.offset_m();
+    let moved = point + lift * offset_m;
+    let touches = lift != DVec3::ZERO && scene.tracer.transmittance(moved, -lift, 4.0 * offset_m, &[]) < 1.0;
+    if touches { moved } else { point }
 }

@@ -191,9 +191,9 @@ fn worst<const N: usize>(zones: [(&'static str, f64, [f64; 5]); N]) -> (u8, (&'s
     rated.into_iter().reduce(|best, next| if next.0 > best.0 { next } else { best }).unwrap_or((0, ("", 0.0)))
 }
 
-/// Flux between two γ within 90° of an azimuth, lm: midpoints of 1° × 0.25° on the interpolant.
+/// Flux between two γ within 90° of an azimuth, lm: midpoints of 1° × 0.5° on the interpolant.
 fn half_zone_lm(distribution: &IntensityDistribution, from_deg: f64, to_deg: f64, azimuth_deg: f64) -> f64 {
-    const STEP_DEG: f64 = 0.25;
+    const STEP_DEG: f64 = 0.5;
     let rings = ((to_deg - from_deg) / STEP_DEG).round() as i32;
     let ring = |i: i32| {
         let gamma = from_deg + STEP_DEG * (f64::from(i) + 0.5);

@@ -1,6 +1,8 @@
 //! `lamp info` for people. C0 lies across the opening's length in every format, so that an LM-63 and
 //! an EULUMDAT file of one luminaire read alike.
 
+use rayon::prelude::*;
+
 use super::super::number::{figures, fixed};
 use super::super::words::{Lang, lamp_word};
 use super::super::xml::{printable, put};
@@ -18,7 +20,8 @@ pub fn info_text(batch: &[Batch], lang: Lang) -> String {
         Ok(lamps) => lamps.iter().map(|lamp| block(lamp, lang)).collect::<Vec<_>>().join("\n"),
         Err(finding) => lint::one(&file.file, finding, rules::severity(finding.code), lang),
     };
-    batch.iter().map(block).collect::<Vec<_>>().join("\n")
+    // The figures of a file are computed where they are printed: thousands of files share the cores.
+    batch.par_iter().map(block).collect::<Vec<_>>().join("\n")
 }
 
 fn block(lamp: &Lamp, lang: Lang) -> String {

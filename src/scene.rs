@@ -23,6 +23,40 @@ pub struct Scene {
     pub channel_of: Vec<usize>,
     /// Ray tracer over `mesh`.
     pub tracer: Tracer,
+    /// Per surface: whether it is part of a luminaire's body.
+    of_a_body: Vec<bool>,
+}
+
+/// What a line of sight met of luminaires' bodies since it was last turned by something else.
+///
+/// A luminaire's own light passes its body as if it were not there until something reflects it. Traced
+/// against the light: whoever has met a body, by passing or by reflection, has seen that luminaire
+/// before or never will on this line.
+#[derive(Clone, Debug, Default)]
+pub struct BodiesMet(Vec<u32>);
+
+impl BodiesMet {
+    /// The line goes on straight behind a pane.
+    #[inline]
+    pub fn passed(&mut self, scene: &Scene, triangle: u32) {
+        let surface = scene.tracer.surface(triangle);
+        if scene.of_a_body[surface as usize] {
+            self.0.push(surface);
+        }
+    }
+
+    /// The line was turned by a mirror.
+    #[inline]
+    pub fn reflected(&mut self, scene: &Scene, triangle: u32) {
+        self.0.clear();
+        self.passed(scene, triangle);
+    }
+
+    /// Whether nothing more is to be seen of a luminaire along this line.
+    #[inline]
+    pub fn shut(&self, luminaire: &Luminaire) -> bool {
+        !self.0.is_empty() && self.0.iter().any(|surface| luminaire.body.contains(surface))
+    }
 }
 
 /// The unit that is solved separately at initial flux: one luminaire group of one type, or one
@@ -109,7 +143,11 @@ impl Scene {
             }
         }
         let tracer = Tracer::build_with(&mesh, &materials, simd);
-        Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer })
+        let mut of_a_body = vec![false; mesh.surfaces.len()];
+        for &surface in luminaires.iter().flat_map(|luminaire| &luminaire.body) {
+            of_a_body[surface as usize] = true;
+        }
+        Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer, of_a_body })
     }
 
     /// The scattering model of triangle `index`.

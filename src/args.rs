@@ -38,6 +38,9 @@ pub enum Command {
   gershun check --format json scenes/box > box.json
   gershun check --blocks 256 --seed 7 scenes/box      # the same bytes every time")]
     Check(Check),
+    /// Solve the luminance field once and keep it in a file
+    #[command(after_help = crate::args_solve::EXAMPLES)]
+    Solve(crate::args_solve::Solve),
     /// Luminance pictures of the cameras
     #[command(after_help = crate::args_view::EXAMPLES)]
     View(crate::args_view::View),

@@ -5,9 +5,11 @@
 mod args;
 mod args_glare;
 mod args_lamp;
+mod args_solve;
 mod args_view;
 mod commands_glare;
 mod commands_lamp;
+mod commands_solve;
 mod commands_view;
 
 use std::io::{IsTerminal, Write};
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::New { dir } => new_project(&dir),
         Command::Schema => say(report::schema()),
         Command::Glare(command) => commands_glare::run(&command),
+        Command::Solve(solve) => commands_solve::run(&solve),
         Command::View(view) => commands_view::run(&view),
         Command::Lamp(command) => commands_lamp::run(&command),
         Command::Explain { code } => commands_lamp::explain(&code),

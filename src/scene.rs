@@ -1,7 +1,10 @@
 //! A scene is one closed world of light: geometry, materials, luminaires and the tracer over them,
 //! validated once. It knows no norm, no observer and no file.
 
+use std::sync::Arc;
+
 use glam::DVec3;
+use sha2::{Digest, Sha256};
 
 use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::{Simd, Tracer};
@@ -148,6 +151,38 @@ impl Scene {
             of_a_body[surface as usize] = true;
         }
         Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer, of_a_body })
+    }
+
+    /// SHA-256 of everything that decides how light goes: geometry, materials and luminaires at initial
+    /// flux. Cameras, viewpoints, areas, light scenes and norms do not enter.
+    pub fn fingerprint(&self) -> String {
+        let mut hasher = Sha256::new();
+        for position in &self.mesh.positions {
+            position.to_array().iter().for_each(|x| hasher.update(x.to_bits().to_le_bytes()));
+        }
+        for triangle in &self.mesh.triangles {
+            triangle.vertices.iter().for_each(|vertex| hasher.update(vertex.to_le_bytes()));
+            hasher.update(triangle.surface.to_le_bytes());
+        }
+        // Debug prints numbers to the last bit.
+        let mut add = |text: String| {
+            hasher.update((text.len() as u64).to_le_bytes());
+            hasher.update(text);
+        };
+        add(format!("{:?} {:?} {:?}", self.mesh.surfaces, self.materials, self.channels));
+        for (index, luminaire) in self.luminaires.iter().enumerate() {
+            let known = self.luminaires[..index].iter().rposition(|l| Arc::ptr_eq(&l.kind, &luminaire.kind));
+            add(match known {
+                Some(before) => format!("as {before}"),
+                None => format!("{:?} {:?}", luminaire.kind.distribution, luminaire.kind.opening),
+            });
+            let (position, axes) = (luminaire.position, luminaire.world_from_luminaire);
+            add(format!(
+                "{position:?} {axes:?} {:?} {} {:?}",
+                luminaire.dim, luminaire.group, luminaire.body
+            ));
+        }
+        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
     /// The scattering model of triangle `index`.

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::Place;
 use crate::geometry::mesh::Mesh;
+use crate::scene::Scene;
 
 /// A division of the mesh.
 #[derive(Clone, Debug)]
@@ -55,6 +56,11 @@ impl Patches {
             ranges.push((first, members.len() as u32));
         }
         Self { of_triangle, ranges, members }
+    }
+
+    /// Divides the surfaces of a scene that have a diffuse part.
+    pub fn of_scene(scene: &Scene, area_m2: f64) -> Self {
+        Self::new(&scene.mesh, area_m2, |triangle| scene.bsdf(triangle as u32).specular(1.0).is_none())
     }
 
     /// Number of patches.

@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
 pub use diagnostics::{Diagnostic, Place, suggestion};
-pub use photometric::{ReadError, is_same_file, read_image, read_photometry};
+pub use photometric::{ReadError, is_same_file, read_field, read_image, read_photometry};
 
 use crate::geometry::trace::Simd;
 use crate::grid::GridRule;

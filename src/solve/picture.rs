@@ -15,6 +15,7 @@ use super::highlights::Highlights;
 use super::look::Landing;
 use super::{Counts, Effort, PARTS, Prepared, answer, prepare};
 use crate::emitters::Emitters;
+use crate::field::store::{Made, StoredField};
 use crate::field::{LuminanceField, Smooth};
 use crate::geometry::trace::Hit;
 use crate::image::{LuminanceImage, View};
@@ -49,9 +50,7 @@ pub enum Detail {
 #[derive(Debug)]
 pub struct Exposure<'s> {
     emitters: Emitters<'s>,
-    field: LuminanceField,
-    direct: LuminanceField,
-    seed: u64,
+    stored: StoredField,
 }
 
 /// A field under one light scene.
@@ -74,26 +73,44 @@ pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
     let diffuse = |t: usize| scene.bsdf(t as u32).specular(1.0).is_none();
     let triangles = 0..scene.mesh.triangles.len();
     let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
-    let effort = Effort { patch_m2: Some(lit_m2 / PATCHES), links: LINKS, ..Effort::default() };
+    let patch_m2 = (lit_m2 / PATCHES).max(1e-12);
+    let effort = Effort { patch_m2: Some(patch_m2), links: LINKS, ..Effort::default() };
     let highlights = Highlights::new(&emitters);
     let (field, direct) = prepare::parts(&emitters, &highlights, &effort, seed);
-    Exposure { emitters, field, direct, seed }
+    let made = Made { seed, links: LINKS, patch_m2 };
+    Exposure { emitters, stored: StoredField { made, field, direct } }
+}
+
+/// Pictures of a scene from its field as it was stored.
+pub fn from_store(scene: &Scene, stored: StoredField) -> Exposure<'_> {
+    Exposure { emitters: Emitters::new(scene), stored }
 }
 
 impl Exposure<'_> {
+    /// The field, to be stored.
+    pub fn stored(&self) -> &StoredField {
+        &self.stored
+    }
+
+    /// [`Exposure::stored`], kept.
+    pub fn into_stored(self) -> StoredField {
+        self.stored
+    }
+
     /// The field with a factor for each channel.
     pub fn picture(&self, weights: &[f64]) -> Picture<'_> {
         let scene = self.emitters.scene;
         let weighted = |values: &[f64]| values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
-        let patches = self.field.patches();
-        let stored: Vec<f64> = (0..patches.sides()).map(|side| weighted(self.field.at(side))).collect();
+        let patches = self.stored.field.patches();
+        let stored: Vec<f64> =
+            (0..patches.sides()).map(|side| weighted(self.stored.field.at(side))).collect();
         let albedo = |side: usize| {
             let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
             reflectance + transmittance
         };
         let indirect: Vec<f64> = (0..patches.sides())
             .map(|side| {
-                let value = stored[side] - weighted(self.direct.at(side));
+                let value = stored[side] - weighted(self.stored.direct.at(side));
                 if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 }
             })
             .collect();
@@ -109,11 +126,11 @@ impl Exposure<'_> {
         let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind);
         Picture {
             emitters: &self.emitters,
-            field: &self.field,
+            field: &self.stored.field,
             weights: weights.to_vec(),
             stored,
             indirect: smooth,
-            seed: self.seed,
+            seed: self.stored.made.seed,
         }
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn parts(
         .map(|t| scene.mesh.normal_and_area(t).1)
         .sum();
     let patch_m2 = effort.patch_m2.unwrap_or(area_m2 / PATCHES).max(1e-12);
-    let patches = Patches::new(&scene.mesh, patch_m2, diffuse);
+    let patches = Patches::of_scene(scene, patch_m2);
     let channels = scene.channels.len();
     let collected: Vec<Collected> = (0..patches.sides())
         .into_par_iter()

@@ -44,6 +44,9 @@ pub enum Command {
     /// Luminance pictures of the cameras
     #[command(after_help = crate::args_view::EXAMPLES)]
     View(crate::args_view::View),
+    /// Luminance from every direction at a point: the luminance body and the light vector
+    #[command(after_help = crate::args_body::EXAMPLES)]
+    Body(crate::args_body::Body),
     /// Start a new project from a small commented example
     #[command(after_help = "Example:
   gershun new my-office && gershun check my-office")]

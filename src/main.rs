@@ -3,10 +3,12 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the one place that prints")]
 
 mod args;
+mod args_body;
 mod args_glare;
 mod args_lamp;
 mod args_solve;
 mod args_view;
+mod commands_body;
 mod commands_glare;
 mod commands_lamp;
 mod commands_solve;
@@ -43,6 +45,7 @@ fn main() -> ExitCode {
         Command::Schema => say(report::schema()),
         Command::Glare(command) => commands_glare::run(&command),
         Command::Solve(solve) => commands_solve::run(&solve),
+        Command::Body(body) => commands_body::run(&body),
         Command::View(view) => commands_view::run(&view),
         Command::Lamp(command) => commands_lamp::run(&command),
         Command::Explain { code } => commands_lamp::explain(&code),

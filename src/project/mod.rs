@@ -19,6 +19,7 @@ use serde::Deserialize;
 pub use diagnostics::{Diagnostic, Place, suggestion};
 pub use photometric::{ReadError, is_same_file, read_field, read_image, read_photometry};
 
+use crate::geometry::polygon;
 use crate::geometry::trace::Simd;
 use crate::grid::GridRule;
 use crate::image::View;
@@ -193,6 +194,14 @@ pub struct Room {
     pub floor: Vec<u32>,
     /// Luminaires (scene indices) that hang in this room.
     pub luminaires: Vec<usize>,
+}
+
+impl Room {
+    /// Whether a point lies in the room.
+    pub fn contains(&self, point: DVec3) -> bool {
+        let height_m = point.z - self.floor_m;
+        (0.0..=self.height_m).contains(&height_m) && polygon::contains(&self.footprint, point.truncate(), 0.0)
+    }
 }
 
 /// Context of a room that changes the illuminance its row asks for.

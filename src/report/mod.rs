@@ -2,6 +2,7 @@
 //! input is [`Outcome`] (for single photometric files [`crate::lamp`]'s data), so equal outcomes give
 //! equal bytes: no clock, host, thread count or absolute path can enter.
 
+pub mod body;
 mod canvas;
 pub mod csv;
 mod file;

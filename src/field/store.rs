@@ -157,6 +157,13 @@ fn describe(world: usize, scene: &Scene, stored: &StoredField, tensors: &mut Vec
     let surface = |patch: usize| scene.mesh.triangles[patches.triangle(2 * patch) as usize].surface;
     let bytes = (0..count).flat_map(|patch| surface(patch).to_le_bytes()).collect();
     tensors.push(Tensor { name: name("surface"), dtype: Dtype::U32, shape: vec![count], bytes });
+    let bytes: Vec<u8> = patches.splits().iter().flat_map(|patch| patch.to_le_bytes()).collect();
+    tensors.push(Tensor {
+        name: name("split"),
+        dtype: Dtype::U32,
+        shape: vec![patches.splits().len()],
+        bytes,
+    });
     for (what, field) in [("luminance_cd_m2", &stored.field), ("direct_cd_m2", &stored.direct)] {
         let values = (0..patches.sides()).flat_map(|side| field.at(side).iter().copied());
         tensors.push(Tensor::floats(name(what), vec![count, 2, channels], values));
@@ -245,7 +252,13 @@ impl<'b> FieldFile<'b> {
         if lit_m2 / patch_m2 > (held + triangles) as f64 {
             return Err(StoreError::Malformed(format!("{held} patches are too few for {patch_m2} m² each")));
         }
-        let patches = Patches::of_scene(scene, patch_m2);
+        let mut patches = Patches::of_scene(scene, patch_m2);
+        for patch in self.splits(world)? {
+            let known = (patch as usize) < patches.len() && patches.len() < held;
+            if !known || patches.split(&scene.mesh, patch as usize).is_none() {
+                return Err(StoreError::Malformed(format!("patch {patch} cannot be split")));
+            }
+        }
         let load = |what: &str| -> Result<LuminanceField, StoreError> {
             let mut field = LuminanceField::dark(patches.clone(), scene.channels.len());
             let values =
@@ -255,6 +268,17 @@ impl<'b> FieldFile<'b> {
         };
         let made = Made { seed: head.seed, links: head.links, patch_m2 };
         Ok(StoredField { made, field: load("luminance_cd_m2")?, direct: load("direct_cd_m2")? })
+    }
+
+    fn splits(&self, world: usize) -> Result<Vec<u32>, StoreError> {
+        let name = format!("world{world}.split");
+        let malformed = |what: String| StoreError::Malformed(format!("tensor {name}: {what}"));
+        let view = self.tensors.tensor(&name).map_err(|error| malformed(error.to_string()))?;
+        if view.dtype() != Dtype::U32 || view.shape().len() != 1 {
+            return Err(malformed(format!("{:?} {:?} instead of a list of U32", view.dtype(), view.shape())));
+        }
+        let numbers = view.data().chunks_exact(4);
+        Ok(numbers.map(|chunk| u32::from_le_bytes(std::array::from_fn(|k| chunk[k]))).collect())
     }
 
     fn floats(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, StoreError> {

@@ -74,7 +74,8 @@ pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
     let triangles = 0..scene.mesh.triangles.len();
     let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
     let patch_m2 = (lit_m2 / PATCHES).max(1e-12);
-    let effort = Effort { patch_m2: Some(patch_m2), links: LINKS, ..Effort::default() };
+    // Smoothing takes patches of about one size.
+    let effort = Effort { patch_m2: Some(patch_m2), adaptive: false, links: LINKS, ..Effort::default() };
     let highlights = Highlights::new(&emitters);
     let (field, direct) = prepare::parts(&emitters, &highlights, &effort, seed);
     let made = Made { seed, links: LINKS, patch_m2 };

@@ -203,7 +203,9 @@ fn the_published_examples_agree() {
         for file in [name, "LightProfile.ies"] {
             std::fs::copy(from.join(file), folder.path().join(file)).expect("copied");
         }
-        let text = format!("[scene]\nfile = \"{name}\"\nlights = true\n");
+        let text = format!(
+            "[scene]\nfile = \"{name}\"\nlights = true\n[materials]\nWhite = {{ reflectance = 0.5 }}\n"
+        );
         std::fs::write(folder.path().join("project.toml"), text).expect("written");
         let project = load(folder.path(), &LoadOptions::default()).expect("loads");
         project.worlds[0].scene.luminaires[0].kind.distribution.flux().0

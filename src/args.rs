@@ -77,6 +77,9 @@ Examples:
     Explain {
         /// Code as printed in brackets, e.g. flux-mismatch
         code: String,
+        /// Language of the explanation
+        #[arg(long, value_enum, default_value_t = crate::args_lamp::LangChoice::En)]
+        lang: crate::args_lamp::LangChoice,
     },
     /// The norms that gershun knows
     #[command(subcommand)]

@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         Command::Body(body) => commands_body::run(&body),
         Command::View(view) => commands_view::run(&view),
         Command::Lamp(command) => commands_lamp::run(&command),
-        Command::Explain { code } => commands_lamp::explain(&code),
+        Command::Explain { code, lang } => commands_lamp::explain(&code, lang.lang()),
         Command::Norm(Norm::List) => list_norms(),
         Command::Norm(Norm::Show { name, row }) => show_norm(&name, row.as_deref()),
         Command::Norm(Norm::Explain { name, row }) => explain_norm(&name, row.as_deref()),

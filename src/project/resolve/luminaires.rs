@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::draft::RoomFactors;
 use super::rooms::check_factor;
+use crate::geometry::gltf::ProfileFile;
 use crate::luminaire::{LuminaireType, Maintenance};
 use crate::photometry::{self, IntensityDistribution, Opening};
 use crate::project::choices::{Factor, OpeningChoice};
@@ -91,29 +92,28 @@ impl Kind {
 pub fn profile(
     name: &str,
     label: &str,
-    uri: &str,
+    stored: &ProfileFile,
     factor: f64,
     cad: &At<String>,
     wanted: &At<bool>,
     context: &mut Context,
 ) -> Option<Kind> {
-    let folder = cad.get_ref().rfind(['/', '\\']).map_or("", |at| &cad.get_ref()[..=at]);
-    let file = format!("{folder}{uri}");
-    let bytes = match context.read_path(&file, SMALL_FILE) {
-        Ok(bytes) => bytes,
-        Err((message, hint)) => {
-            context.error(&wanted.span(), format!("{label}: {message}"), hint);
-            return None;
+    let (file, bytes) = match stored {
+        ProfileFile::Bytes(bytes) => (format!("{}#{name}", cad.get_ref()), bytes.clone()),
+        ProfileFile::Path(path) => {
+            let folder = cad.get_ref().rfind(['/', '\\']).map_or("", |at| &cad.get_ref()[..=at]);
+            let file = format!("{folder}{path}");
+            match context.read_path(&file, SMALL_FILE) {
+                Ok(bytes) => (file, bytes),
+                Err((message, hint)) => {
+                    context.error(&wanted.span(), format!("{label}: {message}"), hint);
+                    return None;
+                }
+            }
         }
     };
     let mut source = from_bytes(&bytes, &file, context)?;
     source.distribution = source.distribution.scaled(factor);
-    if !source.distribution.is_rotationally_symmetric() {
-        context.note(format!(
-            "{label}: how its planes are turned about the beam is not settled by gershun; the 0° plane lies where \
-             `aim` without `rotate` puts it"
-        ));
-    }
     if !(source.distribution.flux().0 > 0.0) {
         context.note(format!("{label} is dark"));
         return None;

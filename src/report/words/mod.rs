@@ -1,11 +1,16 @@
 //! The words of every report. A word is looked up here and nowhere else, so a language is one
 //! column of [`table::TERMS`]; sentences of solver and loader are looked up by [`said`].
 
+mod faults;
+mod findings;
 mod lamp;
+mod rules;
 mod sentences;
 mod table;
 
+pub use findings::found;
 pub use lamp::lamp_word;
+pub use rules::rule_words;
 pub use sentences::said;
 pub use table::{TERMS, Term};
 

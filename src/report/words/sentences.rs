@@ -6,6 +6,7 @@
 use std::borrow::Cow;
 
 use super::Lang;
+use super::findings::finding;
 
 /// Patterns in English and Russian, more special ones first where two could match.
 pub const SENTENCES: &[(&str, &str)] = &[
@@ -109,6 +110,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     (
         "{} light sources of {} are ignored ({}); `lights = true` in [scene] makes them luminaires",
         "источников света: {} – файла {} не используются ({}); `lights = true` в [scene] делает их светильниками",
+    ),
+    (
+        "{}: its node is mirrored, the photometric file is not",
+        "{}: узел зеркально отражён, фотометрический файл – нет",
     ),
     (
         "{}: its range of {} m is ignored, light goes on",
@@ -303,14 +308,36 @@ pub const SENTENCES: &[(&str, &str)] = &[
 pub fn said(lang: Lang, text: &str) -> Cow<'_, str> {
     match lang {
         Lang::En => Cow::Borrowed(text),
-        Lang::Ru => russian(text).or_else(|| one_by_one(text)).map_or(Cow::Borrowed(text), Cow::Owned),
+        Lang::Ru => {
+            let known = look_up(&[SENTENCES], text).or_else(|| of_a_file(text));
+            known.map_or(Cow::Borrowed(text), Cow::Owned)
+        }
     }
 }
 
+/// `file:line: message: consequence`, a finding of a photometric file among the notes of loading.
+fn of_a_file(text: &str) -> Option<String> {
+    text.match_indices(": ").find_map(|(place, _)| {
+        let told = &text[place + 2..];
+        told.match_indices(": ").find_map(|(end, _)| {
+            let [message, consequence] = [&told[..end], &told[end + 2..]].map(finding);
+            Some(format!("{}: {}: {}", &text[..place], message?, consequence?))
+        })
+    })
+}
+
+/// Patterns in English and in another language.
+pub(super) type Patterns = [(&'static str, &'static str)];
+
+/// A sentence, or a list of sentences, by tables of patterns; `None` where none is known.
+pub(super) fn look_up(tables: &[&Patterns], text: &str) -> Option<String> {
+    one(tables, text).or_else(|| one_by_one(tables, text))
+}
+
 /// A list of sentences, each looked up on its own; `None` where none is known.
-fn one_by_one(text: &str) -> Option<String> {
+fn one_by_one(tables: &[&Patterns], text: &str) -> Option<String> {
     let parts: Vec<&str> = text.split("; ").collect();
-    let found: Vec<Option<String>> = parts.iter().map(|part| russian(part)).collect();
+    let found: Vec<Option<String>> = parts.iter().map(|part| one(tables, part)).collect();
     if parts.len() < 2 || found.iter().all(Option::is_none) {
         return None;
     }
@@ -319,16 +346,18 @@ fn one_by_one(text: &str) -> Option<String> {
     Some(said.join("; "))
 }
 
-fn russian(text: &str) -> Option<String> {
-    SENTENCES.iter().find_map(|(english, russian)| {
+fn one(tables: &[&Patterns], text: &str) -> Option<String> {
+    tables.iter().copied().flatten().find_map(|(english, target)| {
         // A closing full stop belongs to the place where the sentence is printed.
         let stopped = english.strip_suffix('.').filter(|_| !text.ends_with('.'));
         let parts = captured(stopped.unwrap_or(english), text)?;
-        let target = if stopped.is_some() { russian.trim_end_matches('.') } else { russian };
+        let target = if stopped.is_some() { target.trim_end_matches('.') } else { target };
         let mut pieces = target.split("{}");
         let mut whole = pieces.next().unwrap_or_default().to_owned();
         for (part, piece) in parts.iter().zip(pieces) {
-            whole.push_str(&part_in_russian(part));
+            // What a file says is quoted as it is.
+            let quoted = whole.ends_with('«');
+            whole.push_str(&if quoted { (*part).to_owned() } else { translated(tables, part) });
             whole.push_str(piece);
         }
         Some(whole)
@@ -336,11 +365,12 @@ fn russian(text: &str) -> Option<String> {
 }
 
 /// Numbers get a decimal comma; a part that is itself a sentence is looked up.
-fn part_in_russian(part: &str) -> String {
-    if part.parse::<f64>().is_ok() {
+fn translated(tables: &[&Patterns], part: &str) -> String {
+    let bare = part.trim_start_matches('C').trim_end_matches('°');
+    if bare.parse::<f64>().is_ok() {
         return part.replace('.', ",");
     }
-    russian(part).or_else(|| one_by_one(part)).unwrap_or_else(|| part.to_owned())
+    look_up(tables, part).unwrap_or_else(|| part.to_owned())
 }
 
 /// What stands at each `{}` of the pattern; `None` if the text does not follow it.
@@ -385,6 +415,18 @@ mod tests {
                 "Luminous surfaces shine on both sides: up to 0.50 % of the value; the margin is 1.2 %"
             ),
             "Светящиеся поверхности излучают в обе стороны: до 0,50 % значения; запас 1,2 %"
+        );
+    }
+
+    /// Catches: findings of photometric files that stay English in a Russian report.
+    #[test]
+    fn findings_among_the_notes_are_translated() {
+        let note = "a.ldt:29: rated 3772 lm, integrates to 3598 lm: Ē is 4.6 % lower than the rated flux suggests; \
+                    set `flux` to choose";
+        let said = said(Lang::Ru, note);
+        assert!(
+            said.starts_with("a.ldt:29: заявлено 3772 лм") && said.contains(": Ē на 4,6 % ниже"),
+            "{said}"
         );
     }
 

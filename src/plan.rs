@@ -3,13 +3,17 @@
 //! nobody needs to know of norms or observers until the answers are measured.
 
 mod areas;
+mod hidden;
+mod lattice;
+mod norm_areas;
 mod requirements;
+mod zones;
 
 use glam::DVec3;
 
 use crate::grid::{Grid, GridError};
 use crate::outcome::{Bound, Modified};
-use crate::project::{AreaKind, Place, Project, World};
+use crate::project::{AreaKind, AreaShape, Place, Project, World};
 use crate::quantity::{Property, Quantity, Statistic};
 use crate::query::{Demand, Kernel, Receiver};
 
@@ -50,6 +54,8 @@ pub struct PlannedArea {
     pub row: Option<String>,
     /// Light scene by which it is judged.
     pub light_scene: usize,
+    /// Where it lies.
+    pub shape: AreaShape,
     /// Points.
     pub grid: Grid,
     /// Quantities with the rows that answer them.

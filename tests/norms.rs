@@ -115,6 +115,95 @@ fn what_cannot_be_judged_is_listed_and_never_passes() {
     }
 }
 
+/// Subjects and reasons of what is not assessed and says `part`.
+fn unassessed<'a>(outcome: &'a Outcome, part: &str) -> Vec<(&'a str, &'a str)> {
+    let open = outcome.requirements.iter().filter(|r| r.verdict == Verdict::NotAssessed);
+    open.filter_map(|r| Some((r.subject.as_str(), r.value.as_ref().err()?.reason.as_str())))
+        .filter(|(_, reason)| reason.contains(part))
+        .collect()
+}
+
+/// An upright area `m` wide on a wall of the room, full height.
+fn on_wall(name: &str, from: [f64; 2], along: [f64; 2]) -> String {
+    let ([x, y], [u, v]) = (from, along);
+    format!(
+        "[[area]]\nname = \"{name}\"\nkind = \"surface\"\nrect = {{ origin = [{x}, {y}, 0], u = [{u}, {v}, 0], v = [0, 0, 2.8] }}\n"
+    )
+}
+
+/// Catches: "walls" taken for assessed because one of them, or a strip of it, has an area.
+#[test]
+fn every_wall_needs_an_area_of_its_own() {
+    let south = on_wall("S", [8.0, 0.0], [-8.0, 0.0]);
+    let east = on_wall("E", [8.0, 5.0], [0.0, -5.0]);
+    let north = on_wall("N", [0.0, 5.0], [8.0, 0.0]);
+    let west = on_wall("W", [0.0, 0.0], [0.0, 5.0]);
+    let run = |walls: &str| solved(&room("en-12464-1-2021", &format!("row = \"34.2\"\n{DESK}{walls}")));
+    let none = run("");
+    assert_eq!(unassessed(&none, "lists no wall"), [("wall", "the project lists no wall in this room")]);
+    let one = run(&south);
+    assert!(of(&one, "S", Statistic::Mean)[0].value.is_ok(), "the listed wall is judged");
+    let named: Vec<&str> =
+        unassessed(&one, "no area lies on this wall").iter().map(|(wall, _)| *wall).collect();
+    assert_eq!(named, ["Wall_E", "Wall_N", "Wall_W"]);
+    let half = on_wall("W", [0.0, 2.0], [0.0, 3.0]);
+    let most = run(&format!("{south}{east}{north}{half}"));
+    assert_eq!(unassessed(&most, "wall"), [("Wall_W", "areas cover only 60 % of this wall")]);
+    let all = run(&format!("{south}{east}{north}{west}"));
+    assert_eq!(unassessed(&all, "wall"), []);
+    // A window that shows through is no wall; a surface taken by its name is the wall.
+    let by_name: String = ["S", "E", "N", "W"]
+        .map(|wall| format!("[[area]]\nname = \"{wall}\"\nkind = \"surface\"\nsurface = \"Wall_{wall}\"\n"))
+        .concat();
+    let window = "[materials]\nPane = { glass = 0.9 }\n[[room]]\nname = \"Room\"\nopenings = [{ wall = \"Wall_S\", from = [1, 0.5], to = [7, 2.5], material = \"Pane\" }]\n";
+    let glazed = run(&format!("{by_name}{window}"));
+    assert_eq!(unassessed(&glazed, "wall"), []);
+}
+
+/// Catches: a room taken for filled because the bounding box of a task area fills it, a surrounding of one
+/// task that passes for all, a zone with a hole, a task of another row, a volume above the heads.
+#[test]
+fn every_task_area_needs_the_zones_round_it() {
+    let run = |rest: &str| solved(&room("en-12464-1-2021", &format!("row = \"34.2\"\n{rest}")));
+    // An L whose bounding box is the room: a corner of 4 × 2.5 m is no task area.
+    let l = "[[area]]\nname = \"L\"\npolygon = [[0.5, 0.5, 0.75], [7.5, 0.5, 0.75], [7.5, 2.5, 0.75], [4, 2.5, 0.75], [4, 4.5, 0.75], [0.5, 4.5, 0.75]]\n";
+    let corner = run(l);
+    assert_eq!(unassessed(&corner, "surrounding area").len(), 1, "the corner is near the task");
+    let second =
+        "[[area]]\nname = \"Corner\"\nrect = { origin = [4, 2.5, 0.75], u = [3.5, 0, 0], v = [0, 2, 0] }\n";
+    let filled = run(&format!("{l}{second}"));
+    assert_eq!(unassessed(&filled, "surrounding area"), [], "together they fill the room");
+    // Two desks, one surrounding.
+    let two = format!("{DESK}{}", DESK.replace("\"Desk\"", "\"Far\"").replace("[3, 2,", "[6, 4,"));
+    let around = "[[area]]\nname = \"Around\"\nkind = \"surrounding\"\nof = \"Desk\"\n";
+    let both = "[[area]]\nname = \"Around both\"\nkind = \"surrounding\"\nof = \"Far\"\n";
+    let reason = "the project lists no surrounding area round this task area";
+    assert_eq!(unassessed(&run(&format!("{two}{around}")), "surrounding area"), [("Far", reason)]);
+    assert_eq!(unassessed(&run(&format!("{two}{around}{both}")), "surrounding area"), []);
+    let strip = "[[area]]\nname = \"South of it\"\nkind = \"surrounding\"\nof = \"Desk\"\nrect = { origin = [2.5, 1.5, 0.75], u = [2.6, 0, 0], v = [0, 0.5, 0] }\n";
+    let partly = run(&format!("{DESK}{strip}"));
+    // 2.6 × 0.5 m of 2.6 × 1.8 m less the desk; a round of 0.5 m has round corners.
+    let found = unassessed(&partly, "surrounding area");
+    assert!(found.len() == 1 && found[0].1.starts_with("areas cover only 3"), "{found:?}");
+    // A task area of another row does not answer for the room's own.
+    let other = run(&DESK.replace("rect", "row = \"34.6\"\nrect"));
+    assert_eq!(unassessed(&other, "no task area of row 34.2").len(), 1);
+    assert_eq!(unassessed(&run(DESK), "no task area").len(), 0);
+    // People sit at 1.2 m, and where the desk is.
+    let volume = |at: &str| {
+        format!(
+            "{DESK}[[area]]\nname = \"Space\"\nkind = \"volume\"\nrect = {{ origin = {at}, u = [2, 0, 0], v = [0, 2, 0] }}\n"
+        )
+    };
+    assert_eq!(unassessed(&run(&volume("[2.8, 1.5, 2.2]")), "no volume at 1.2 m").len(), 1);
+    let beside = run(&volume("[3.8, 1.5, 1.2]"));
+    assert_eq!(
+        unassessed(&beside, "volumes"),
+        [("Desk", "volumes at 1.2 m lie over only 50 % of this task area")]
+    );
+    assert_eq!(unassessed(&run(&volume("[2.8, 1.5, 1.2]")), "volume"), []);
+}
+
 #[test]
 fn russian_norms_have_their_own_planes_statistics_and_no_zones() {
     let board = "[[area]]\nname = \"Board\"\nrow = \"15-board\"\nrect = { origin = [0.02, 1, 1], u = [0, 3, 0], v = [0, 0, 1] }\n\

@@ -1,6 +1,7 @@
 //! Norm rows and `[[require]]` → requirements on what is measured. What a norm regulates and nothing
 //! here can judge becomes a requirement that is "not assessed", with the reason: never silence.
 
+use super::zones::{self, zone_name, zone_of};
 use super::{Plan, PlanError, PlannedArea, PlannedRequirement, PlannedRoom, Subject};
 use crate::norm::{self, Limit, Row, Standard, UgrMethod, Unknown, Verified, Zone};
 use crate::outcome::{Bound, Modified};
@@ -256,12 +257,12 @@ fn whole_room(
             }
             zone => {
                 let leading = matches!(limit.statistic, Statistic::Mean | Statistic::Min | Statistic::OfTask);
-                if !is_own || !leading || has_zone(room, planned, zone, application) {
-                    continue;
-                }
-                let name = zone_name(zone);
-                let reason = format!("the project lists no {name} in this room");
-                vec![(Subject::Missing(reason), name.to_owned())]
+                let gaps = if leading {
+                    zones::gaps(world, room, planned, row, is_own, application, zone)
+                } else {
+                    Vec::new()
+                };
+                gaps.into_iter().map(|gap| (Subject::Missing(gap.reason), gap.subject)).collect()
             }
         };
         for (subject, name) in subjects {
@@ -357,73 +358,6 @@ fn other_planes(norm: &Norm, room: &Room, planned: &PlannedRoom) -> Vec<String> 
         })
     });
     said.collect()
-}
-
-/// Zone of the norm that an area plays; `None` for surfaces that are neither wall nor ceiling.
-fn zone_of(room: &Room, area: &PlannedArea) -> Option<Zone> {
-    match area.kind {
-        AreaKind::Task => Some(Zone::Task),
-        AreaKind::Surrounding => Some(Zone::Surrounding),
-        AreaKind::Background => Some(Zone::Background),
-        AreaKind::Volume => Some(Zone::Cylindrical),
-        AreaKind::Surface => {
-            let normal = area.grid.normal;
-            let top = room.floor_m + room.height_m;
-            let high = area.grid.points.iter().all(|point| (point.position.z - top).abs() < 0.3);
-            if normal.z < -0.99 && high {
-                Some(Zone::Ceiling)
-            } else if normal.z.abs() < 0.01 && area.grid.points.iter().all(|p| on_outline(room, p.position)) {
-                Some(Zone::Walls)
-            } else {
-                None
-            }
-        }
-    }
-}
-
-/// Whether a point stands at a wall of the room: a board or a screen elsewhere is no wall.
-fn on_outline(room: &Room, at: glam::DVec3) -> bool {
-    let p = glam::DVec2::new(at.x, at.y);
-    (0..room.footprint.len()).any(|index| {
-        let (a, b) = (room.footprint[index], room.footprint[(index + 1) % room.footprint.len()]);
-        let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        p.distance(a + (b - a) * t) < 0.3
-    })
-}
-
-fn has_zone(room: &Room, planned: &PlannedRoom, zone: Zone, rules: &norm::Application) -> bool {
-    // Beyond a task area that fills the room there is nothing to judge.
-    let around = matches!(zone, Zone::Surrounding | Zone::Background);
-    around && is_filled(room, planned, rules.border_m.value)
-        || planned.areas.iter().any(|area| zone_of(room, area) == Some(zone))
-}
-
-/// Whether the horizontal task areas cover the room up to the border that a grid may leave out.
-fn is_filled(room: &Room, planned: &PlannedRoom, border_m: f64) -> bool {
-    let corners = &room.footprint;
-    let count = corners.len();
-    let doubled: f64 = (0..count).map(|i| corners[i].perp_dot(corners[(i + 1) % count])).sum();
-    let around_m: f64 = (0..count).map(|i| corners[i].distance(corners[(i + 1) % count])).sum();
-    let needed_m2 = (0.5 * doubled.abs() - border_m * around_m).max(0.25 * doubled.abs());
-    let tasks = planned.areas.iter().filter(|area| area.kind == AreaKind::Task);
-    let covered_m2: f64 = tasks
-        .filter(|area| area.grid.normal.z.abs() > 0.99)
-        .map(|area| area.grid.edge_u.length() * area.grid.edge_v.length())
-        .sum();
-    covered_m2 >= needed_m2
-}
-
-fn zone_name(zone: Zone) -> &'static str {
-    match zone {
-        Zone::Task => "task area",
-        Zone::Surrounding => "surrounding area",
-        Zone::Background => "background area",
-        Zone::Walls => "wall",
-        Zone::Ceiling => "ceiling",
-        Zone::Cylindrical => "volume",
-        Zone::Room => "room",
-        Zone::Declared => "declared value",
-    }
 }
 
 fn bound(bound: norm::Bound) -> Bound {

@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn what_the_loop_and_the_judge_say_is_translated() {
         // Catches a reason reworded in lib.rs or assemble.rs that a Russian report would print in English.
-        let source = concat!(include_str!("../../lib.rs"), include_str!("../../assemble.rs"));
+        let source = concat!(include_str!("../../lib.rs"), include_str!("../../assemble/gauge.rs"));
         for text in [
             "verdicts certain",
             "accuracy reached",

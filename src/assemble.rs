@@ -1,5 +1,7 @@
 //! Plan and sheets → requirements with verdicts, and everything the report shows.
 
+mod cheapest;
+mod dimming;
 mod flux;
 mod gauge;
 mod listed;
@@ -8,10 +10,12 @@ mod room;
 use crate::emitters::{Emitters, Sighted};
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, area, room_ugr};
-use crate::outcome::{Requirement, UgrTableOutcome, Verdict};
-use crate::plan::{Plan, PlannedRequirement, Subject};
+use crate::norm::State;
+use crate::outcome::{Condition, Requirement, UgrTableOutcome, Verdict};
+use crate::plan::{Plan, PlannedQuantity, PlannedRequirement, Subject};
 use crate::project::{Compare, Project, Room, World};
 use crate::quantity::Statistic;
+use crate::scene::Channel;
 
 /// Everything that is measured on one world after some blocks.
 #[derive(Clone, Copy)]
@@ -30,6 +34,8 @@ pub struct Context<'a> {
     pub seen: &'a [Vec<Sighted>],
     /// For each room, the UGR table method's values for each spacing-to-height ratio asked for.
     pub tables: &'a [Vec<(f64, Vec<UgrTableOutcome>)>],
+    /// Factors on luminaire groups beyond those of the light scene; empty: none.
+    pub group_factors: &'a [(String, f64)],
     /// Risk of an individual interval.
     pub alpha: f64,
     /// Risk of all requirements of a room at this look.
@@ -123,8 +129,45 @@ impl Context<'_> {
         }
     }
 
-    fn weights(&self, light_scene: usize, room: &Room, maintained: bool) -> Vec<f64> {
-        measure::weights(self.world, &self.project.light_scenes[light_scene], room, maintained)
+    /// Weights of a new installation.
+    fn initial(&self, light_scene: usize, room: &Room) -> Vec<f64> {
+        let weights = measure::weights(self.world, &self.project.light_scenes[light_scene], room, false);
+        self.dimmed(weights)
+    }
+
+    /// Weights times the factors of their groups.
+    fn dimmed(&self, mut weights: Vec<f64>) -> Vec<f64> {
+        for (weight, channel) in weights.iter_mut().zip(&self.world.scene.channels) {
+            let own = self
+                .group_factors
+                .iter()
+                .find(|(known, _)| matches!(channel, Channel::Luminaires { group, .. } if group == known));
+            *weight *= own.map_or(1.0, |(_, factor)| *factor);
+        }
+        weights
+    }
+
+    /// The condition in which the project's norm judges illuminances; maintained without one.
+    fn condition(&self) -> Condition {
+        self.project.norm.as_ref().map_or(Condition::MAINTAINED, |norm| {
+            let rules = &norm.standard.application;
+            Condition { state: rules.illuminance_state.value, light: rules.light.value }
+        })
+    }
+
+    /// Weights of the norm's condition.
+    fn weights(&self, light_scene: usize, room: &Room) -> Vec<f64> {
+        let light_scene = &self.project.light_scenes[light_scene];
+        self.dimmed(match self.condition().state {
+            State::Maintained => measure::weights(self.world, light_scene, room, true),
+            State::Initial => measure::weights(self.world, light_scene, room, false),
+            State::Emergency => measure::emergency_weights(self.world, light_scene, room),
+        })
+    }
+
+    /// Block values of a planned quantity under a light scene in the norm's condition.
+    fn blocks(&self, entry: &PlannedQuantity, light_scene: usize, room: &Room) -> area::Blocks {
+        area::blocks(&self.answers, entry, &self.weights(light_scene, room), self.condition().light)
     }
 
     /// Whether every requested value has reached a relative standard error `r` (UGR: 3.5 r).
@@ -133,10 +176,9 @@ impl Context<'_> {
             let entry = &self.world.rooms[room];
             let planned = &self.plan.rooms[room];
             let areas = planned.areas.iter().all(|area| {
-                let weights = self.weights(area.light_scene, entry, true);
-                area.quantities
-                    .iter()
-                    .all(|quantity| fine(&area::blocks(&self.answers, quantity, &weights), r))
+                let own = area.quantities.iter();
+                own.map(|quantity| self.blocks(quantity, area.light_scene, entry))
+                    .all(|blocks| fine(&blocks, r))
             });
             let views = (0..planned.views.len()).all(|index| {
                 let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha, &[]).ugr;

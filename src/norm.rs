@@ -3,13 +3,14 @@
 //! quantity is computed.
 
 mod application;
+mod derived;
 mod explain;
 mod read;
 mod text;
 
 pub use application::{
-    Application, Background, Beyond, Comparison, Fact, GridChoice, LevelOf, Reflectances, State, Surrounding,
-    UgrMethod,
+    Application, Background, Beyond, Comparison, Fact, GridChoice, LevelOf, Light, Reflectances, State,
+    Surrounding, UgrMethod,
 };
 pub use explain::{explain, explain_row, limit_line};
 pub use read::{Mistake, NormError};
@@ -30,6 +31,11 @@ pub fn bundled() -> &'static [(&'static str, &'static str)] {
         ("en-1838-2013", include_str!("../standards/en-1838-2013.toml")),
         ("en-17037-2018", include_str!("../standards/en-17037-2018.toml")),
     ]
+}
+
+/// JSON Schema of norm files, read as JSON.
+pub fn schema() -> &'static str {
+    include_str!("norm/norm.schema.json")
 }
 
 /// A standard, or a user's own set of rows.
@@ -79,6 +85,10 @@ pub struct Row {
     pub limits: Vec<Limit>,
     /// What the norm regulates here without this file knowing the value.
     pub unknown: Vec<Unknown>,
+    /// Largest luminous intensity of luminaires, against disability glare.
+    pub intensity: Option<IntensityLimit>,
+    /// What the norm asks here beyond the limits and nothing computes; ends "not assessed".
+    pub not_judged: Vec<String>,
     /// How the plane of the task stands.
     pub plane: Plane,
     /// As the norm writes the plane, may be empty.
@@ -119,6 +129,31 @@ pub enum Posture {
     Standing,
     /// Both.
     Both,
+}
+
+/// Largest luminous intensity of a luminaire within a zone about the vertical, by its mounting height.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IntensityLimit {
+    /// Pairs [mounting height from, limit] in m and cd, rising from 0 m.
+    pub by_height_cd: Vec<[f64; 2]>,
+    /// The zone begins at this angle from straight down, degrees.
+    pub from_deg: f64,
+    /// And ends at this one.
+    pub to_deg: f64,
+    /// Standing of the limits.
+    #[serde(default)]
+    pub verified: Verified,
+}
+
+impl IntensityLimit {
+    /// Height class of a mounting height: from, to (infinite for the last), limit.
+    pub fn class(&self, height_m: f64) -> Option<(f64, f64, f64)> {
+        let index = self.by_height_cd.iter().rposition(|[from_m, _]| height_m >= *from_m)?;
+        let [from_m, limit_cd] = self.by_height_cd[index];
+        let to_m = self.by_height_cd.get(index + 1).map_or(f64::INFINITY, |[next_m, _]| *next_m);
+        Some((from_m, to_m, limit_cd))
+    }
 }
 
 /// A column that the norm has for a row, and whose value is not in the file.
@@ -203,120 +238,6 @@ impl Standard {
     pub fn row(&self, reference: &str) -> Option<&Row> {
         self.rows.iter().find(|row| row.reference == reference)
     }
-
-    /// Required mean illuminance of the immediate surrounding of a task, lx; `None` if the standard
-    /// has no such rule.
-    pub fn surrounding_illuminance(&self, task_lx: f64) -> Option<f64> {
-        let steps = &self.application.surrounding.as_ref()?.illuminance_lx.value;
-        Some(steps.iter().find(|[from_lx, _]| task_lx >= *from_lx).map_or(task_lx, |[_, lx]| *lx))
-    }
-
-    /// All limits for an area judged by a row: the row's own, then those for surrounding and
-    /// background that follow from the task's illuminance, then the uniformities that go with limits
-    /// on walls, ceiling and cylindrical illuminance.
-    pub fn requirements(&self, row: &Row) -> Vec<Limit> {
-        self.requirements_at(row, None)
-    }
-
-    /// The same with the task's illuminance raised or lowered to a value for reasons of context;
-    /// surrounding and background follow it.
-    pub fn requirements_at(&self, row: &Row, modified_lx: Option<f64>) -> Vec<Limit> {
-        let mut limits = row.limits.clone();
-        if let Some(task) = row.illuminance() {
-            let (bound, verified) = match modified_lx {
-                None => (task.bound, task.verified),
-                Some(lx) => (Bound::Min(lx), self.standing_of_modified(row, task, lx)),
-            };
-            let task = Limit { bound, verified, ..*task };
-            if let Some(own) = limits.iter_mut().find(|limit| limit.is_task_level()) {
-                (own.bound, own.verified) = (bound, verified);
-            }
-            limits.extend(self.around(&task));
-        }
-        let rules = &self.application;
-        for (zone, uniformity) in [
-            (Zone::Walls, &rules.walls_u0),
-            (Zone::Ceiling, &rules.ceiling_u0),
-            (Zone::Cylindrical, &rules.cylindrical_u0),
-        ] {
-            let mean =
-                row.limits.iter().find(|limit| limit.zone == zone && limit.statistic == Statistic::Mean);
-            let own = row.limits.iter().any(|limit| limit.zone == zone && limit.statistic == Statistic::U0);
-            if let (Some(mean), Some(u0), false) = (mean, uniformity, own) {
-                limits.push(minimum(
-                    zone,
-                    mean.quantity,
-                    Statistic::U0,
-                    u0.value,
-                    mean.verified.min(u0.verified),
-                ));
-            }
-        }
-        limits
-    }
-
-    /// How well a modified illuminance is known: as the row's own value for difficult conditions, or no
-    /// better than the task's and the scale along which it was found.
-    fn standing_of_modified(&self, row: &Row, task: &Limit, lx: f64) -> Verified {
-        match (row.modified_lx, &self.application.illuminance_scale_lx) {
-            (Some((own_lx, verified)), _) if (own_lx - lx).abs() < 1e-9 => verified,
-            (_, Some(scale)) => task.verified.min(scale.verified),
-            (_, None) => Verified::Unverified,
-        }
-    }
-
-    /// Limits of surrounding and background that follow from a task's mean illuminance.
-    fn around(&self, task: &Limit) -> Vec<Limit> {
-        let mut limits = Vec::new();
-        if let Some(share) = &self.application.surrounding_of_task {
-            let (zone, statistic) = (Zone::Surrounding, Statistic::OfTask);
-            limits.push(minimum(zone, task.quantity, statistic, share.value, share.verified));
-        }
-        let (Some(surrounding), Bound::Min(task_lx)) = (&self.application.surrounding, task.bound) else {
-            return limits;
-        };
-        let lx = self.surrounding_illuminance(task_lx).unwrap_or(task_lx);
-        let known = task.verified.min(surrounding.illuminance_lx.verified);
-        let quantity = task.quantity;
-        let u0 = &surrounding.u0;
-        limits.push(minimum(Zone::Surrounding, quantity, Statistic::Mean, lx, known));
-        limits.push(minimum(Zone::Surrounding, quantity, Statistic::U0, u0.value, u0.verified));
-        if let Some(Background { fraction, u0, .. }) = &self.application.background {
-            let known = known.min(fraction.verified);
-            limits.push(minimum(Zone::Background, quantity, Statistic::Mean, lx * fraction.value, known));
-            limits.push(minimum(Zone::Background, quantity, Statistic::U0, u0.value, u0.verified));
-        }
-        limits
-    }
-}
-
-impl Standard {
-    /// The task's illuminance some steps further along the norm's scale, lx; no steps: the row's
-    /// value for difficult conditions.
-    ///
-    /// # Errors
-    /// Why there is none, in words that end a sentence.
-    pub fn modified_illuminance(&self, row: &Row, steps: Option<i32>) -> Result<f64, String> {
-        let Some(Limit { bound: Bound::Min(required_lx), .. }) = row.illuminance() else {
-            return Err(format!("row {} requires no illuminance", row.reference));
-        };
-        let Some(steps) = steps else {
-            let modified = row.modified_lx.map(|(lx, _)| lx);
-            return modified.ok_or_else(|| {
-                format!("the modified illuminance of row {} is not known here: give steps", row.reference)
-            });
-        };
-        let Some(scale) = &self.application.illuminance_scale_lx else {
-            return Err(format!("{} has no scale of illuminance to step along", self.short));
-        };
-        let place = scale.value.iter().position(|lx| (lx - required_lx).abs() < 1e-9);
-        let place = place.ok_or_else(|| {
-            format!("{required_lx} lx of row {} is no step of the norm's scale", row.reference)
-        })?;
-        let target = i64::try_from(place).unwrap_or(i64::MAX).saturating_add(i64::from(steps));
-        let found = usize::try_from(target).ok().and_then(|target| scale.value.get(target));
-        found.copied().ok_or_else(|| format!("{steps} steps from {required_lx} lx leave the norm's scale"))
-    }
 }
 
 impl Limit {
@@ -360,11 +281,6 @@ impl Zone {
             Self::Declared => "declared",
         }
     }
-}
-
-/// A lower limit.
-fn minimum(zone: Zone, quantity: Quantity, statistic: Statistic, value: f64, verified: Verified) -> Limit {
-    Limit { zone, quantity, statistic, bound: Bound::Min(value), verified }
 }
 
 #[cfg(test)]

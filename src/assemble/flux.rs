@@ -2,6 +2,7 @@
 
 use super::Context;
 use crate::measure::{area, flux};
+use crate::norm::{Light, State};
 use crate::outcome::{FluxBalance, Power, Value};
 use crate::plan::PlannedRoom;
 use crate::project::{AreaKind, Room};
@@ -17,7 +18,7 @@ impl Context<'_> {
     ) -> Vec<FluxBalance> {
         let mut balances = Vec::new();
         for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
-            let weights = self.weights(number, room, false);
+            let weights = self.initial(number, room);
             let tasks = self.flux_on_tasks(planned, &weights);
             let balance = flux::balance(
                 &self.answers,
@@ -76,13 +77,15 @@ impl Context<'_> {
         if !(installed_w > 0.0 && area_m2 > 0.0) {
             return None;
         }
-        let weights = self.weights(0, room, true);
+        // In an emergency the mains draw nothing, so that nothing can be related to it.
+        let in_emergency = self.condition().state == State::Emergency;
+        let weights = self.weights(0, room);
         let (mut flux_lm, mut lit_m2) = (0.0, 0.0);
-        for area in planned.areas.iter().filter(|area| area.kind == AreaKind::Task) {
+        for area in planned.areas.iter().filter(|area| area.kind == AreaKind::Task && !in_emergency) {
             let Some(entry) = area.quantities.iter().find(|q| q.quantity == Quantity::Horizontal) else {
                 continue;
             };
-            let blocks = area::blocks(&self.answers, entry, &weights);
+            let blocks = area::blocks(&self.answers, entry, &weights, self.condition().light);
             let cell_m2 = area.grid.spacing_m[0] * area.grid.spacing_m[1];
             if let Ok(mean_lx) = area::gauge(&blocks, Statistic::Mean, self.alpha).value {
                 let own_m2 = cell_m2 * blocks.values.len() as f64;
@@ -110,7 +113,7 @@ impl Context<'_> {
                 .quantities
                 .iter()
                 .find(|q| matches!(q.quantity, Quantity::Horizontal | Quantity::Normal))?;
-            let blocks = area::blocks(&self.answers, entry, weights);
+            let blocks = area::blocks(&self.answers, entry, weights, Light::All);
             let cell_m2 = area.grid.spacing_m[0] * area.grid.spacing_m[1];
             let total = sum.get_or_insert_with(|| vec![0.0; self.answers.blocks()]);
             for point in &blocks.values {

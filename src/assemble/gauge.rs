@@ -5,7 +5,7 @@ use super::Context;
 use crate::glare::source::NO_SOURCE;
 use crate::luminaire::LuminaireType;
 use crate::measure::glare_sources::Convention;
-use crate::measure::{Gauged, area, room_ugr, view};
+use crate::measure::{self, Gauged, area, intensity, room_ugr, view};
 use crate::outcome::{UgrTableOutcome, Verdict};
 use crate::plan::{PlannedRequirement, Subject};
 use crate::project::{Declared, Room};
@@ -28,10 +28,9 @@ impl Context<'_> {
         let entry = &self.world.rooms[room];
         match &planned.subject {
             Subject::Area(place, quantity) => {
-                let weights = self.weights(planned.light_scene, entry, true);
                 let asked = &self.plan.rooms[room].areas[*place].quantities[*quantity];
-                let blocks = area::blocks(&self.answers, asked, &weights);
-                (area::gauge(&blocks, planned.statistic, alpha), "maintained".into(), None)
+                let blocks = self.blocks(asked, planned.light_scene, entry);
+                (area::gauge(&blocks, planned.statistic, alpha), self.condition().note().into(), None)
             }
             Subject::Viewpoint(viewpoint) => (
                 self.worst_view(room, *viewpoint, planned.light_scene, alpha),
@@ -39,11 +38,10 @@ impl Context<'_> {
                 None,
             ),
             Subject::OfTask(place, quantity, task, of) => {
-                let weights = self.weights(planned.light_scene, entry, true);
                 let areas = &self.plan.rooms[room].areas;
-                let own = area::blocks(&self.answers, &areas[*place].quantities[*quantity], &weights);
-                let task = area::blocks(&self.answers, &areas[*task].quantities[*of], &weights);
-                (area::gauge_of_task(&own, &task, alpha), "maintained".into(), None)
+                let own = self.blocks(&areas[*place].quantities[*quantity], planned.light_scene, entry);
+                let task = self.blocks(&areas[*task].quantities[*of], planned.light_scene, entry);
+                (area::gauge_of_task(&own, &task, alpha), self.condition().note().into(), None)
             }
             Subject::UgrTable(shr) => {
                 let mut note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
@@ -78,6 +76,14 @@ impl Context<'_> {
                     key,
                 )
             }
+            Subject::Intensity { kind, heights_m, zone_deg } => {
+                let peak_cd = self.peak_intensity(room, planned.light_scene, kind, *heights_m, *zone_deg);
+                (
+                    peak_cd.map_or_else(Gauged::undefined, Gauged::exact),
+                    "emergency output, initial".into(),
+                    None,
+                )
+            }
             Subject::Missing(reason) => (
                 Gauged::undefined(Undefined::because(reason.clone())),
                 String::new(),
@@ -86,10 +92,34 @@ impl Context<'_> {
         }
     }
 
+    /// Largest emergency intensity among the luminaires of a type that hang in a class of heights, initial.
+    fn peak_intensity(
+        &self,
+        room: usize,
+        light_scene: usize,
+        kind: &str,
+        [from_m, to_m]: [f64; 2],
+        zone_deg: [f64; 2],
+    ) -> Result<f64, Undefined> {
+        let entry = &self.world.rooms[room];
+        let scene = &self.world.scene;
+        let light_scene = &self.project.light_scenes[light_scene];
+        let weights = measure::weights(self.world, light_scene, entry, false);
+        let hung = entry.luminaires.iter().map(|&l| (l, &scene.luminaires[l])).filter(|(_, luminaire)| {
+            let height_m = luminaire.position.z - entry.floor_m;
+            luminaire.kind.name == kind && height_m >= from_m && height_m < to_m
+        });
+        let peaks = hung.map(|(index, luminaire)| {
+            let share = luminaire.kind.emergency.unwrap_or(0.0) * weights[scene.channel_of[index]];
+            share * intensity::peak_cd(luminaire, zone_deg)
+        });
+        peaks.reduce(f64::max).ok_or_else(|| Undefined::because("the room has no luminaire"))
+    }
+
     /// The worst table value of a room at a spacing-to-height ratio. The method knows luminaires only:
     /// where other surfaces shine brightly it says nothing.
     fn worst_table(&self, room: usize, shr: f64, light_scene: usize) -> Result<f64, Undefined> {
-        let weights = self.weights(light_scene, &self.world.rooms[room], false);
+        let weights = self.initial(light_scene, &self.world.rooms[room]);
         let scene = &self.world.scene;
         let bright = scene.channels.iter().zip(&weights).any(|(channel, weight)| match channel {
             Channel::Surfaces { material } => {
@@ -178,7 +208,7 @@ impl Context<'_> {
         indices: &[&'static str],
     ) -> view::Glare {
         let planned = &self.plan.rooms[room].views[index];
-        let weights = self.weights(light_scene, &self.world.rooms[room], false);
+        let weights = self.initial(light_scene, &self.world.rooms[room]);
         let sighted = &self.seen[room][index];
         let convention = Convention::default();
         let asked = view::Asked { gaze: planned.direction, row: planned.row, indices, convention };

@@ -5,7 +5,7 @@ use super::listed::{furniture, luminaire, types};
 use crate::judge;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{area, view};
-use crate::outcome::{AreaOutcome, PointField, RoomOutcome, Value, ViewpointOutcome};
+use crate::outcome::{AreaOutcome, Dimming, PointField, RoomOutcome, Value, ViewpointOutcome};
 use crate::plan::PlannedRoom;
 use crate::project::Room;
 use crate::quantity::{Quantity, Statistic};
@@ -43,6 +43,7 @@ impl Context<'_> {
                 None
             } else {
                 judge::dimming(&self.requirements(index))
+                    .map(|dimming| Dimming { groups: self.group_dimming(index), ..dimming })
             },
         };
         (outcome, values)
@@ -51,16 +52,17 @@ impl Context<'_> {
     fn area(&self, room: &Room, area: &crate::plan::PlannedArea, values: &mut Vec<Value>) -> AreaOutcome {
         let mut fields = Vec::new();
         for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
-            let weights = self.weights(number, room, true);
+            let weights = self.weights(number, room);
+            let condition = self.condition();
             for entry in &area.quantities {
                 fields.push(PointField {
                     light_scene: light_scene.name.clone(),
                     quantity: entry.quantity,
-                    maintained: true,
-                    points: area::points(&self.answers, entry, &weights, self.alpha),
+                    condition,
+                    points: area::points(&self.answers, entry, &weights, condition.light, self.alpha),
                     n: self.answers.blocks(),
                 });
-                let blocks = area::blocks(&self.answers, entry, &weights);
+                let blocks = area::blocks(&self.answers, entry, &weights, condition.light);
                 for statistic in
                     [Statistic::Mean, Statistic::Min, Statistic::Max, Statistic::U0, Statistic::Ud]
                 {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::text::{COLUMNS, Column, Kind, LimitText, RowText, StandardText};
-use super::{Application, Bound, Limit, Plane, Row, Standard, Unknown, Verified};
+use super::{Application, Bound, IntensityLimit, Limit, Plane, Row, Standard, Unknown, Verified};
 use crate::quantity::{Quantity, SPELLINGS, Statistic};
 
 /// All mistakes of a norm file.
@@ -278,7 +278,12 @@ impl Reader<'_> {
         if let Some(plane) = &text.plane_m {
             self.check(&plane.span(), "plane_m", *plane.get_ref(), Kind::Height);
         }
+        if let Some(intensity) = &text.intensity {
+            self.check_intensity(&intensity.span(), intensity.get_ref());
+        }
         Row {
+            intensity: text.intensity.map(Spanned::into_inner),
+            not_judged: text.not_judged,
             reference: text.reference.into_inner(),
             area: text.area,
             task: text.task,
@@ -293,6 +298,21 @@ impl Reader<'_> {
             plane_m: text.plane_m.map(Spanned::into_inner),
             note: text.note,
             sources: text.sources,
+        }
+    }
+
+    fn check_intensity(&mut self, span: &Range<usize>, limit: &IntensityLimit) {
+        let steps = &limit.by_height_cd;
+        let rising = steps.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] <= pair[1][1]);
+        let from_the_floor =
+            steps.first().is_some_and(|[from_m, limit_cd]| from_m.abs() < f64::EPSILON && *limit_cd > 0.0);
+        if !(rising && from_the_floor && steps.iter().flatten().all(|number| number.is_finite())) {
+            let what = "by_height_cd does not rise from 0 m".into();
+            self.mistake(span, what, "pairs [mounting height from in m, limit in cd], the first from 0");
+        }
+        if !(0.0 <= limit.from_deg && limit.from_deg < limit.to_deg && limit.to_deg <= 180.0) {
+            let what = format!("no zone from {}° to {}°", limit.from_deg, limit.to_deg);
+            self.mistake(span, what, "angles from straight down, between 0 and 180");
         }
     }
 

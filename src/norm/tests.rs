@@ -93,7 +93,15 @@ fn the_other_norms_carry_their_own_statistics_senses_and_planes() {
     assert_eq!(task(&sp, "Iб").2, Bound::Min(1250.0), "1 200 lx is no step of its scale");
     let emergency = read("en-1838-2013");
     assert_eq!(task(&emergency, "route-centre"), (Quantity::Horizontal, Statistic::Min, Bound::Min(1.0)));
-    assert!(emergency.application.not_judged.is_some());
+    assert_eq!(
+        (emergency.application.light.value, emergency.application.illuminance_state.value),
+        (Light::Direct, State::Emergency)
+    );
+    let route = emergency.row("route-centre").unwrap().intensity.clone().unwrap();
+    let limit_cd = |height_m: f64| format!("{:?}", route.class(height_m).unwrap());
+    assert_eq!(limit_cd(2.49), "(0.0, 2.5, 500.0)");
+    assert_eq!(limit_cd(2.5), "(2.5, 3.0, 900.0)");
+    assert_eq!(limit_cd(12.0), "(4.5, inf, 5000.0)");
     let sports = read("en-12193-2018");
     let limits = sports.requirements(sports.row("basketball-II").unwrap());
     let share = limit_of(&limits, Zone::Surrounding, Statistic::OfTask).unwrap();

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use crate::grid::Grid;
+use crate::norm::{Light, State};
 use crate::photometry::IntensityDistribution;
 use crate::project::AreaKind;
 use crate::quantity::Quantity;
@@ -75,6 +76,28 @@ pub struct Dimming {
     pub quantity: String,
     /// Whether what dimming cannot mend (uniformity, ratios, glare) passes.
     pub others_pass: bool,
+    /// Factors by luminaire group, where that is more than one question.
+    pub groups: Option<GroupDimming>,
+}
+
+/// Factors on the luminaire groups with which all verdicts of a room still pass, at the least power.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroupDimming {
+    /// What is left of the power, or of the flux where a power is not known.
+    pub share: f64,
+    /// `power` or `flux`.
+    pub of: String,
+    /// One entry for each group, in the order of the luminaires.
+    pub groups: Vec<GroupFactor>,
+}
+
+/// The factor on one luminaire group.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroupFactor {
+    /// Group.
+    pub group: String,
+    /// Factor on its output, beyond that of the light scene.
+    pub factor: f64,
 }
 
 /// One luminaire on the plan.
@@ -137,6 +160,32 @@ pub struct AreaOutcome {
     pub fields: Vec<PointField>,
 }
 
+/// Under which condition of the installation an illuminance is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Condition {
+    /// Age and output.
+    pub state: State,
+    /// Which light counts.
+    pub light: Light,
+}
+
+impl Condition {
+    /// At the end of the maintenance interval, all light.
+    pub const MAINTAINED: Self = Self { state: State::Maintained, light: Light::All };
+
+    /// As it stands in notes.
+    pub fn note(self) -> &'static str {
+        match (self.state, self.light) {
+            (State::Maintained, Light::All) => "maintained",
+            (State::Initial, Light::All) => "initial",
+            (State::Emergency, Light::All) => "emergency output, maintained",
+            (State::Maintained, Light::Direct) => "maintained, direct light only",
+            (State::Initial, Light::Direct) => "initial, direct light only",
+            (State::Emergency, Light::Direct) => "emergency output, maintained, direct light only",
+        }
+    }
+}
+
 /// Values of one quantity under one light scene on a grid.
 #[derive(Clone, Debug)]
 pub struct PointField {
@@ -144,8 +193,8 @@ pub struct PointField {
     pub light_scene: String,
     /// Quantity.
     pub quantity: Quantity,
-    /// Whether maintained (else initial).
-    pub maintained: bool,
+    /// Age and output of the installation, and which light counts.
+    pub condition: Condition,
     /// Number of blocks behind every point.
     pub n: usize,
     /// One entry per grid point; `None` where the point is excluded.

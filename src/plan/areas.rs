@@ -66,6 +66,7 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
             kind: spec.kind,
             of: spec.of.map(|of| specs[of].name.clone()),
             row: row_of(project, world, spec),
+            modified: spec.modified.clone().or_else(|| spec.of.and_then(|of| specs[of].modified.clone())),
             light_scene: spec.light_scene.unwrap_or(0),
             shape: spec.shape.clone(),
             grid,
@@ -257,6 +258,7 @@ fn kernel(quantity: Quantity, normal: DVec3) -> Option<Kernel> {
         Quantity::Modelling
         | Quantity::Luminance { .. }
         | Quantity::Ugr
+        | Quantity::Intensity
         | Quantity::ColourRendering
         | Quantity::DiscomfortIndex
         | Quantity::Declared(_)

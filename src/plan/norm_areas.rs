@@ -24,6 +24,7 @@ pub(super) fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: u
         of: None,
         room: index,
         row: None,
+        modified: None,
         light_scene: None,
         shape,
         rule: GridRule::En,

@@ -1,9 +1,10 @@
 //! Norm rows and `[[require]]` → requirements on what is measured. What a norm regulates and nothing
 //! here can judge becomes a requirement that is "not assessed", with the reason: never silence.
 
-use super::zones::{self, zone_name, zone_of};
+use super::whole_room::whole_room;
+use super::zones::zone_of;
 use super::{Plan, PlanError, PlannedArea, PlannedRequirement, PlannedRoom, Subject};
-use crate::norm::{self, Limit, Row, Standard, UgrMethod, Unknown, Verified, Zone};
+use crate::norm::{self, Limit, Row, Standard, Unknown, Verified, Zone};
 use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, CustomSubject, Norm, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
@@ -15,6 +16,14 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
             let planes = other_planes(norm, room, &plan.rooms[index]);
             plan.rooms[index].requirements.extend(required);
             plan.reasons.extend(planes);
+            let mut hung = room.luminaires.iter().map(|&l| &world.scene.luminaires[l].kind);
+            let in_emergency = norm.standard.application.illuminance_state.value == norm::State::Emergency;
+            if in_emergency && hung.all(|kind| kind.emergency.is_none()) {
+                plan.reasons.push(format!(
+                    "Room \"{}\" is dark in an emergency: none of its luminaires has an output then (`emergency`).",
+                    room.name
+                ));
+            }
         }
     }
     for requirement in &world.requirements {
@@ -81,13 +90,16 @@ fn subject(
 }
 
 /// What is measured or declared of a room as a whole; `None` for what needs points.
-fn of_room(quantity: Quantity, shr: f64) -> Option<Subject> {
+pub(super) fn of_room(quantity: Quantity, shr: f64) -> Option<Subject> {
     match quantity {
         Quantity::Ugr => Some(Subject::UgrTable(shr)),
         Quantity::DiscomfortIndex => Some(Subject::DiscomfortTable(shr)),
         Quantity::ColourRendering => Some(Subject::ColourRendering),
         Quantity::Declared(property) => Some(Subject::Declared(property)),
         Quantity::NotComputed(_) => Some(Subject::Missing("gershun does not compute this quantity".into())),
+        Quantity::Intensity => {
+            Some(Subject::Missing("gershun does not compute this quantity of a room".into()))
+        }
         _ => None,
     }
 }
@@ -156,7 +168,7 @@ fn of_norm(
             rows.push(row);
         }
         let Some(zone) = zone_of(room, area) else { continue };
-        let modified = modification(standard, room, row, own);
+        let modified = modification(standard, room, area, row, own);
         let level_lx = modified.as_ref().map(|(lx, _)| *lx);
         for limit in standard.requirements_at(row, level_lx).iter().filter(|limit| limit.zone == zone) {
             let subject = on(planned, place, limit.quantity, limit.statistic);
@@ -212,94 +224,33 @@ fn of_norm(
 }
 
 /// The statistic of the row's required illuminance.
-fn standard_level(row: &Row) -> Statistic {
+pub(super) fn standard_level(row: &Row) -> Statistic {
     row.illuminance().map_or(Statistic::Mean, |limit| limit.statistic)
 }
 
-/// The illuminance asked for in this context and how it came about; only for the room's own row.
+/// The illuminance asked for in this context and how it came about: the area's own modification, or the
+/// room's for the room's own row.
 fn modification(
     standard: &Standard,
     room: &Room,
+    area: &PlannedArea,
     row: &Row,
     own: Option<&String>,
 ) -> Option<(f64, Modified)> {
-    let modified = room.modified.as_ref().filter(|_| own == Some(&row.reference))?;
+    let of_room = room.modified.as_ref().filter(|_| own == Some(&row.reference));
+    let modified = area.modified.as_ref().or(of_room)?;
     let level_lx = standard.modified_illuminance(row, modified.steps).ok()?;
     let norm::Bound::Min(required_lx) = row.illuminance()?.bound else { return None };
     Some((level_lx, Modified { required_lx, steps: modified.steps, reason: modified.reason.clone() }))
 }
 
-/// What a row asks of the room as a whole, and what of it nothing in the project lets one judge.
-fn whole_room(
-    norm: &Norm,
-    world: &World,
-    index: usize,
-    room: &Room,
-    planned: &PlannedRoom,
-    row: &Row,
-    is_own: bool,
-) -> Vec<PlannedRequirement> {
-    let standard = &norm.standard;
-    let application = &standard.application;
-    let mut required = Vec::new();
-    for limit in &standard.requirements(row) {
-        let subjects: Vec<(Subject, String)> = match limit.zone {
-            Zone::Room | Zone::Declared => {
-                let observed = application.ugr_method.value == UgrMethod::Observers;
-                if limit.quantity == Quantity::Ugr && observed {
-                    observers(world, index, room)
-                } else {
-                    let subject = of_room(limit.quantity, application.ugr_shr.value).unwrap_or_else(|| {
-                        Subject::Missing("gershun does not compute this quantity of a room".into())
-                    });
-                    vec![(subject, room.name.clone())]
-                }
-            }
-            zone => {
-                let leading = matches!(limit.statistic, Statistic::Mean | Statistic::Min | Statistic::OfTask);
-                let gaps = if leading {
-                    zones::gaps(world, room, planned, row, is_own, application, zone)
-                } else {
-                    Vec::new()
-                };
-                gaps.into_iter().map(|gap| (Subject::Missing(gap.reason), gap.subject)).collect()
-            }
-        };
-        for (subject, name) in subjects {
-            required.push(requirement(standard, row, limit, subject, &name));
-        }
-    }
-    for unknown in &row.unknown {
-        let of_room = matches!(unknown.zone, Zone::Room | Zone::Declared);
-        if !is_own && !of_room {
-            continue;
-        }
-        let mut one = unknown_limit(standard, row, unknown);
-        one.subject_name = if of_room { room.name.clone() } else { zone_name(unknown.zone).to_owned() };
-        required.push(one);
-    }
-    required
-}
-
 /// What the norm limits and its file does not know.
-fn unknown_limit(standard: &Standard, row: &Row, unknown: &Unknown) -> PlannedRequirement {
+pub(super) fn unknown_limit(standard: &Standard, row: &Row, unknown: &Unknown) -> PlannedRequirement {
     let reason = format!("the norm's file has no value of {} for row {}", unknown.column, row.reference);
     unassessed(standard, &row.reference, unknown.quantity, unknown.statistic, reason)
 }
 
-/// A norm that judges glare at observers: every one of the room, by its worst direction.
-fn observers(world: &World, index: usize, room: &Room) -> Vec<(Subject, String)> {
-    let own = world.viewpoints.iter().enumerate().filter(|(_, view)| view.room == index);
-    let own: Vec<(Subject, String)> =
-        own.map(|(view, spec)| (Subject::Viewpoint(view), spec.name.clone())).collect();
-    if own.is_empty() {
-        let reason = "the norm judges UGR at observers and the project lists no viewpoint here".into();
-        return vec![(Subject::Missing(reason), room.name.clone())];
-    }
-    own
-}
-
-fn requirement(
+pub(super) fn requirement(
     standard: &Standard,
     row: &Row,
     limit: &Limit,
@@ -321,7 +272,7 @@ fn requirement(
 }
 
 /// Something regulated whose limit is not known: no number, no verdict, a reason.
-fn unassessed(
+pub(super) fn unassessed(
     standard: &Standard,
     clause: &str,
     quantity: Quantity,
@@ -367,6 +318,6 @@ fn bound(bound: norm::Bound) -> Bound {
     }
 }
 
-fn verified(verified: Verified) -> String {
+pub(super) fn verified(verified: Verified) -> String {
     verified.key().into()
 }

@@ -164,10 +164,8 @@ impl Survey<'_> {
             let mut tally = Tally::default();
             for (place, flat) in plane.lattice(task, to_m) {
                 let distance_m = plane.distance_m(task, flat);
-                if distance_m > from_m && distance_m <= to_m && self.is_asked(place, &plane) {
-                    tally.add(
-                        over.iter().any(|area| self.is_under(&plane, area, place, rules.border_m.value)),
-                    );
+                if distance_m > from_m && distance_m <= to_m {
+                    self.count(&mut tally, &plane, place, &over);
                 }
             }
             if let Some(share) = tally.short_of(COVERED) {
@@ -204,9 +202,19 @@ impl Survey<'_> {
         gaps
     }
 
-    /// Whether a place round a task needs an area: inside the room, away from its walls by the border that
-    /// may be left out, and not inside furniture.
-    fn is_asked(&self, place: DVec3, plane: &Plane) -> bool {
+    /// Counts a place that needs one of `areas` over it: inside the room, away from its walls by the border
+    /// that may be left out, and, where no area lies, not inside furniture, which takes rays to know.
+    fn count(&self, tally: &mut Tally, plane: &Plane, place: DVec3, areas: &[&PlannedArea]) {
+        if self.is_within(place, plane) {
+            let covered =
+                areas.iter().any(|area| self.is_under(plane, area, place, self.rules.border_m.value));
+            if covered || !inside_furniture(self.scene, place, plane.normal, false) {
+                tally.add(covered);
+            }
+        }
+    }
+
+    fn is_within(&self, place: DVec3, plane: &Plane) -> bool {
         let flat = DVec2::new(place.x, place.y);
         let border_m = self.border_m();
         let height_m = place.z - self.room.floor_m;
@@ -216,9 +224,7 @@ impl Survey<'_> {
             // An upright task may hang at a wall; its strip ends at floor, ceiling and the other walls.
             (0.0..=self.room.height_m).contains(&height_m)
         };
-        within
-            && inside(&self.room.footprint, flat)
-            && !inside_furniture(self.scene, place, plane.normal, false)
+        within && inside(&self.room.footprint, flat)
     }
 
     /// Whether an area lies over a place: parallel, near the plane (level ones at any height), and not
@@ -232,11 +238,15 @@ impl Survey<'_> {
         let left_out_m = area.grid.border_m - border_m;
         match &area.shape {
             AreaShape::Points(_) => plane.distance_m(area, flat) <= 1.0,
-            AreaShape::Surface { surface, .. } if !on_surface(self.scene, *surface, place) => false,
-            AreaShape::Rect { .. } | AreaShape::Polygon(_) | AreaShape::Surface { .. } => {
+            shape @ (AreaShape::Rect { .. } | AreaShape::Polygon(_) | AreaShape::Surface { .. }) => {
                 let outline = plane.outline(area);
+                let on_own = |place| match shape {
+                    AreaShape::Surface { surface, .. } => on_surface(self.scene, *surface, place),
+                    AreaShape::Rect { .. } | AreaShape::Polygon(_) | AreaShape::Points(_) => true,
+                };
                 inside(&outline, flat)
                     && (!(left_out_m > 0.0) || distance_to_outline(&outline, flat) >= left_out_m)
+                    && on_own(place)
             }
         }
     }
@@ -322,12 +332,8 @@ impl Survey<'_> {
                 let plane = Plane::of(task);
                 let mut tally = Tally::default();
                 for (place, flat) in plane.lattice(task, 0.0).filter(|_| plane.is_level()) {
-                    if plane.distance_m(task, flat) <= 0.0 && self.is_asked(place, &plane) {
-                        tally.add(
-                            volumes
-                                .iter()
-                                .any(|area| self.is_under(&plane, area, place, self.rules.border_m.value)),
-                        );
+                    if plane.distance_m(task, flat) <= 0.0 {
+                        self.count(&mut tally, &plane, place, &volumes);
                     }
                 }
                 if let Some(share) = tally.short_of(COVERED) {

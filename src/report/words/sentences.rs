@@ -137,6 +137,23 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "помещение «{}»: грани оболочки обращены наружу; обе стороны отражают одинаково",
     ),
     // Notes on glare.
+    ("initial, direct light only", "начальные значения, только прямой свет"),
+    ("initial", "начальные значения"),
+    ("maintained, direct light only", "эксплуатационные значения, только прямой свет"),
+    (
+        "emergency output, maintained, direct light only",
+        "аварийный режим, эксплуатационные значения, только прямой свет",
+    ),
+    ("emergency output, maintained", "аварийный режим, эксплуатационные значения"),
+    ("emergency output, initial", "аварийный режим, новая установка"),
+    (
+        "Room \"{}\" is dark in an emergency: none of its luminaires has an output then (`emergency`).",
+        "Помещение «{}» в аварийном режиме тёмное: ни у одного светильника не задан аварийный поток (`emergency`).",
+    ),
+    (
+        "a tenth of the task's maintained illuminance is required where that is more than 15 lx: ask for it with [[require]]",
+        "требуется десятая часть эксплуатационной освещённости рабочей области, если она больше 15 лк: задайте её в [[require]]",
+    ),
     ("{}; {}; L_b = E_ind/π", "{}; {}; L_b = E_отр/π"),
     ("far field of the opening's centre", "дальняя зона, центр отверстия"),
     ("visible part, mean luminance", "видимая часть, средняя яркость"),

@@ -209,7 +209,10 @@ fn every_task_area_needs_the_zones_round_it() {
     let around = "[[area]]\nname = \"Around\"\nkind = \"surrounding\"\nof = \"Desk\"\n";
     let both = "[[area]]\nname = \"Around both\"\nkind = \"surrounding\"\nof = \"Far\"\n";
     let reason = "the project lists no surrounding area round this task area";
-    assert_eq!(unassessed(&run(&format!("{two}{around}")), "surrounding area"), [("Far", reason)]);
+    assert_eq!(
+        unassessed(&run(&format!("{two}{around}")), "surrounding area"),
+        [("Far · surrounding area", reason)]
+    );
     assert_eq!(unassessed(&run(&format!("{two}{around}{both}")), "surrounding area"), []);
     let strip = "[[area]]\nname = \"South of it\"\nkind = \"surrounding\"\nof = \"Desk\"\nrect = { origin = [2.5, 1.5, 0.75], u = [2.6, 0, 0], v = [0, 0.5, 0] }\n";
     let partly = run(&format!("{DESK}{strip}"));
@@ -230,7 +233,7 @@ fn every_task_area_needs_the_zones_round_it() {
     let beside = run(&volume("[3.8, 1.5, 1.2]"));
     assert_eq!(
         unassessed(&beside, "volumes"),
-        [("Desk", "volumes at 1.2 m lie over only 50 % of this task area")]
+        [("Desk · volume", "volumes at 1.2 m lie over only 50 % of this task area")]
     );
     assert_eq!(unassessed(&run(&volume("[2.8, 1.5, 1.2]")), "volume"), []);
 }

@@ -104,6 +104,11 @@ pub(super) fn zone_name(zone: Zone) -> &'static str {
     }
 }
 
+/// The zone of a task area: `Desk · surrounding area`.
+fn beside(task: &PlannedArea, zone: Zone) -> String {
+    format!("{} · {}", task.name, zone_name(zone))
+}
+
 /// A room, its areas, and the row by which they are surveyed.
 struct Survey<'a> {
     scene: &'a Scene,
@@ -174,7 +179,7 @@ impl Survey<'_> {
                 } else {
                     format!("the project lists no {name} round this task area")
                 };
-                gaps.push(Gap { subject: task.name.clone(), reason });
+                gaps.push(Gap { subject: beside(task, zone), reason });
             }
         }
         gaps
@@ -196,7 +201,7 @@ impl Survey<'_> {
             };
             if !self.areas(zone).any(|area| area.of.as_ref() == Some(&task.name) || holds(area)) {
                 let reason = format!("the project lists no {} round this task area", zone_name(zone));
-                gaps.push(Gap { subject: task.name.clone(), reason });
+                gaps.push(Gap { subject: beside(task, zone), reason });
             }
         }
         gaps
@@ -340,7 +345,7 @@ impl Survey<'_> {
                     let percent = 100.0 * share;
                     let reason =
                         format!("volumes at {height_m} m lie over only {percent:.0} % of this task area");
-                    gaps.push(Gap { subject: task.name.clone(), reason });
+                    gaps.push(Gap { subject: beside(task, Zone::Cylindrical), reason });
                 }
             }
         }

@@ -54,8 +54,12 @@ pub enum Command {
         /// Folder to make; it must not exist
         dir: PathBuf,
     },
-    /// Print the JSON Schema of result.json
-    Schema,
+    /// Print the JSON Schema of result.json, or of norm files
+    Schema {
+        /// Of which file
+        #[arg(value_enum, default_value = "result")]
+        of: Schema,
+    },
     /// Glare of luminance images, or of a project's observers
     #[command(
         after_help = "Every index is printed with its convention; one that is not defined here says why.
@@ -217,6 +221,15 @@ pub enum Format {
     Junit,
     /// SARIF, for code scanners
     Sarif,
+}
+
+/// What a JSON Schema describes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Schema {
+    /// result.json
+    Result,
+    /// A norm file, read as JSON
+    Norm,
 }
 
 /// What undecided requirements mean to a script.

@@ -29,7 +29,7 @@ use gershun::report::{self, Colour, Lang, Style};
 use gershun::{Progress, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm, Undecided};
+use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm, Schema, Undecided};
 
 /// Exit codes of the contract with scripts.
 const COMPLIES: u8 = 0;
@@ -42,7 +42,8 @@ fn main() -> ExitCode {
     let code = match Cli::parse().command {
         Command::Check(check) => run_checks(&check),
         Command::New { dir } => new_project(&dir),
-        Command::Schema => say(report::schema()),
+        Command::Schema { of: Schema::Result } => say(report::schema()),
+        Command::Schema { of: Schema::Norm } => say(norm::schema()),
         Command::Glare(command) => commands_glare::run(&command),
         Command::Solve(solve) => commands_solve::run(&solve),
         Command::Body(body) => commands_body::run(&body),

@@ -242,6 +242,8 @@ pub struct AreaSpec {
     pub room: usize,
     /// Row of the norm for this area; `None`: the room's, then the norm's default.
     pub row: Option<String>,
+    /// Whether the illuminance of its row is raised or lowered here, and why; over the room's.
+    pub modified: Option<Modification>,
     /// Light scene by which it is judged; `None`: the first.
     pub light_scene: Option<usize>,
     /// Where it lies.

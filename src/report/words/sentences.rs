@@ -142,6 +142,23 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "помещение «{}»: грани оболочки обращены наружу; обе стороны отражают одинаково",
     ),
     // Notes on glare.
+    ("initial, direct light only", "начальные значения, только прямой свет"),
+    ("initial", "начальные значения"),
+    ("maintained, direct light only", "эксплуатационные значения, только прямой свет"),
+    (
+        "emergency output, maintained, direct light only",
+        "аварийный режим, эксплуатационные значения, только прямой свет",
+    ),
+    ("emergency output, maintained", "аварийный режим, эксплуатационные значения"),
+    ("emergency output, initial", "аварийный режим, новая установка"),
+    (
+        "Room \"{}\" is dark in an emergency: none of its luminaires has an output then (`emergency`).",
+        "Помещение «{}» в аварийном режиме тёмное: ни у одного светильника не задан аварийный поток (`emergency`).",
+    ),
+    (
+        "a tenth of the task's maintained illuminance is required where that is more than 15 lx: ask for it with [[require]]",
+        "требуется десятая часть эксплуатационной освещённости рабочей области, если она больше 15 лк: задайте её в [[require]]",
+    ),
     ("{}; {}; L_b = E_ind/π", "{}; {}; L_b = E_отр/π"),
     ("far field of the opening's centre", "дальняя зона, центр отверстия"),
     ("visible part, mean luminance", "видимая часть, средняя яркость"),
@@ -284,7 +301,34 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "the norm judges UGR at observers and the project lists no viewpoint here",
         "норма оценивает UGR у наблюдателей, а в проекте здесь нет точек наблюдения",
     ),
+    (
+        "the project lists no task area of row {} in this room",
+        "в проекте для этого помещения не задана рабочая область строки {}",
+    ),
+    (
+        "the project lists no volume at {} m, the eye height of the row",
+        "в проекте не задан объём на высоте {} м – высоте глаз для этой строки",
+    ),
+    ("the project lists no {} round this task area", "вокруг этой рабочей области в проекте не задано: {}"),
+    (
+        "areas cover only {} % of the {} round this task area",
+        "области покрывают лишь {} % зоны вокруг этой рабочей области: {}",
+    ),
+    (
+        "volumes at {} m lie over only {} % of this task area",
+        "объёмы на высоте {} м лежат лишь над {} % этой рабочей области",
+    ),
+    ("areas cover only {} % of this wall", "области покрывают лишь {} % этой стены"),
+    ("areas cover only {} % of this ceiling", "области покрывают лишь {} % потолка"),
+    ("no area lies on this wall", "на этой стене нет области"),
+    ("no area lies on this ceiling", "на потолке нет области"),
     ("the project lists no {} in this room", "в проекте для этого помещения не задано: {}"),
+    ("task area", "рабочая область"),
+    ("surrounding area", "зона непосредственного окружения"),
+    ("background area", "зона периферии"),
+    ("wall", "стена"),
+    ("ceiling", "потолок"),
+    ("volume", "объём"),
     (
         "the row is for a vertical plane and this area is horizontal",
         "строка относится к вертикальной плоскости, а область горизонтальная",

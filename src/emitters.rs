@@ -18,7 +18,7 @@ use crate::luminaire::Luminaire;
 use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
-pub use direct::{TOLERANCE, unshadowed};
+pub use direct::{TOLERANCE, contour, unshadowed};
 pub use images::{Mirror, planes};
 pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_coarsely, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};

@@ -202,6 +202,7 @@ mod tests {
             c0_azimuth_deg: 0.0,
             file: String::new(),
             declared_ra: None,
+            emergency: None,
         };
         let lamp = Luminaire {
             kind: std::sync::Arc::new(kind),

@@ -77,7 +77,7 @@ pub fn seen_by_views(plan: &Plan, emitters: &Emitters, seed: u64) -> Vec<Vec<Sig
         .map(|room| {
             room.views
                 .par_iter()
-                .map(|view| crate::emitters::sighted_from(emitters, view.eye, seed))
+                .map(|view| crate::emitters::sighted_from(emitters, view.eye, seed, view.highlights))
                 .collect()
         })
         .collect()
@@ -295,8 +295,9 @@ impl Context<'_> {
         let weights = self.weights(light_scene, &self.world.rooms[room], false);
         let sighted = &self.seen[room][index];
         let convention = Convention::default();
-        let asked = view::Asked { gaze: planned.direction, row: planned.row, indices, convention };
-        view::glare(&self.answers, self.emitters, sighted, &asked, &weights, alpha)
+        let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
+        let asked = view::Asked { gaze: planned.direction, indices, convention };
+        view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
     }
 
     fn weights(&self, light_scene: usize, room: &Room, maintained: bool) -> Vec<f64> {
@@ -450,6 +451,7 @@ impl Context<'_> {
                     e_v_lx: glare.e_v_lx,
                     sources: glare.sources,
                     notes: glare.notes,
+                    card: None,
                 });
             }
         }

@@ -1,8 +1,12 @@
 //! What a run produced: measured values, verdicts, and everything a reader needs to trust them.
 //! The report writes this and nothing else; it holds no clock, host, thread count or absolute path.
 
+mod card;
+
 use glam::{DVec2, DVec3};
 use serde::Serialize;
+
+pub use card::{Card, PlacedSource, Remedy, Shift};
 
 use crate::grid::Grid;
 use crate::photometry::IntensityDistribution;
@@ -276,6 +280,8 @@ pub struct ViewpointOutcome {
     pub sources: Vec<GlareSourceOutcome>,
     /// Validity notes.
     pub notes: Vec<String>,
+    /// Its card, where one was made.
+    pub card: Option<Card>,
 }
 
 /// An index of glare beside UGR.

@@ -6,6 +6,7 @@ mod chains;
 mod double;
 pub mod far_field;
 mod flux;
+mod glance;
 mod highlights;
 mod lobe;
 mod local;
@@ -13,6 +14,7 @@ mod look;
 mod path;
 pub mod picture;
 mod prepare;
+mod thumbnail;
 
 use glam::DVec3;
 
@@ -21,7 +23,9 @@ use crate::field::LuminanceField;
 use crate::query::Demand;
 use crate::scene::Scene;
 
+pub use glance::{GlanceEffort, Mended, glances, mend};
 pub use local::{LocalEffort, LocalKernel, SeenForm};
+pub use thumbnail::thumbnail;
 
 /// Number of parts in which a sheet keeps every answer.
 pub const PARTS: usize = 3;

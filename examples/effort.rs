@@ -28,6 +28,7 @@ fn main() {
     let base = Effort::default();
     let list = [
         base,
+        Effort { adaptive: false, ..base },
         Effort { gather: 8, ..base },
         Effort { gather: 32, ..base },
         Effort { walks: 4, ..base },
@@ -64,7 +65,7 @@ fn main() {
         let block_s = (t2 - t1) / 128.0;
         let sd = (square * 128.0).sqrt();
         println!(
-            "gather {:3} walks {:3} looks {:2} shadow {:4} links {:3} patch {:?} ({} patches): prepare {:.3} s, block {:.2} ms, sd/point {:.2} % (direct {:.2} %), cost to 0.5 %: {:.3} s",
+            "gather {:3} walks {:3} looks {:2} shadow {:4} links {:3} patch {:?} ({} patches, adaptive {}): prepare {:.3} s, block {:.2} ms, sd/point {:.2} % (direct {:.2} %), cost to 0.5 %: {:.3} s",
             effort.gather,
             effort.walks,
             effort.looks,
@@ -72,6 +73,7 @@ fn main() {
             effort.links,
             effort.patch_m2,
             prepared.patches(),
+            effort.adaptive,
             (t1 - t0) / 4.0,
             1e3 * block_s,
             100.0 * sd,

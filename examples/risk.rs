@@ -1,6 +1,8 @@
 //! How often a verdict near its limit is wrong: 1 000 seeds of a small room, each judged as `check` does,
-//! looks included, on four quantities with a limit a little above the truth and one a little below.
-//! The truth is one long run with another seed. Writes CSV and a table to reports/risk:
+//! looks included, on four quantities with a limit a little above the truth and one a little below. And
+//! how often the 95 % intervals of the same four contain the truth after a fixed number of blocks, U0's
+//! among them, which is decided by contrasts. The truth is one long run with another seed. Writes CSV and
+//! a table to reports/risk:
 //!
 //!     cargo run --release --example risk [SEEDS]
 #![allow(clippy::print_stdout, reason = "a study prints")]
@@ -11,7 +13,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use gershun::grid::GridRule;
-use gershun::outcome::{Outcome, Verdict};
+use gershun::outcome::{Interval, Outcome, Value, Verdict};
 use gershun::project::{
     AreaKind, AreaShape, AreaSpec, CustomRequirement, CustomSubject, LoadOptions, Project, Viewpoint, load,
 };
@@ -19,6 +21,8 @@ use gershun::quantity::{Quantity, Statistic};
 use gershun::{Settings, Watch, run};
 use glam::DVec3;
 
+/// Blocks after which the coverage of intervals is counted.
+const COVERAGE_BLOCKS: usize = 64;
 /// Blocks of the long run.
 const TRUTH_BLOCKS: usize = 8_192;
 /// Blocks at which a run gives up: looks after 32, 64, 128 and 256.
@@ -29,8 +33,8 @@ const MOST_BLOCKS: usize = 256;
 const JUDGED: [(&str, CustomSubject, Quantity, Statistic, f64); 4] = [
     ("Ē", CustomSubject::Area(0), Quantity::Horizontal, Statistic::Mean, 0.006),
     ("U0", CustomSubject::Area(0), Quantity::Horizontal, Statistic::U0, 0.03),
-    ("E_cyl", CustomSubject::Area(0), Quantity::Cylindrical, Statistic::Mean, 0.008),
-    ("UGR", CustomSubject::Viewpoint(0), Quantity::Ugr, Statistic::Value, 0.15),
+    ("E_cyl", CustomSubject::Area(0), Quantity::Cylindrical, Statistic::Mean, 0.012),
+    ("UGR", CustomSubject::Viewpoint(0), Quantity::Ugr, Statistic::Value, 0.3),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -55,9 +59,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let settings = Settings { most_blocks: MOST_BLOCKS, ..Settings::default() };
+    let fixed = Settings { exact_blocks: Some(vec![COVERAGE_BLOCKS]), ..Settings::default() };
     let (mut counts, mut families) = (vec![[0usize; 3]; limits.len()], 0usize);
+    let mut covered = vec![[0usize; 3]; JUDGED.len()];
     for seed in 1..=seeds {
         project.accuracy.seed = seed;
+        let outcome = solve(&project, &fixed)?;
+        for ((judged, value), covered) in JUDGED.iter().zip(&truth).zip(&mut covered) {
+            let interval = found(&outcome, judged)?;
+            let side = if interval.hi < *value {
+                1
+            } else if interval.lo > *value {
+                2
+            } else {
+                0
+            };
+            covered[side] += 1;
+        }
         let outcome = solve(&project, &settings)?;
         let mut any = false;
         for (index, requirement) in outcome.requirements.iter().enumerate() {
@@ -73,7 +91,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         families += usize::from(any);
     }
-    write(seeds, &truth, &limits, &counts, families, 1.0 - project.accuracy.confidence)
+    write(seeds, &truth, &limits, &counts, families, &covered, 1.0 - project.accuracy.confidence)
 }
 
 /// The box of the example scenes with a plane, an observer, and no norm.
@@ -88,6 +106,7 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         of: None,
         room: 0,
         row: None,
+        modified: None,
         light_scene: None,
         shape: AreaShape::Rect { origin: DVec3::new(0.2, 0.2, 0.75), u: DVec3::X * 4.6, v: DVec3::Y * 3.6 },
         rule: GridRule::Count([6, 4]),
@@ -118,16 +137,18 @@ fn truth(project: &mut Project) -> Result<Vec<f64>, Box<dyn Error>> {
     project.worlds[0].requirements.clear();
     let settings = Settings { exact_blocks: Some(vec![TRUTH_BLOCKS]), ..Settings::default() };
     let outcome = solve(project, &settings)?;
-    JUDGED
-        .iter()
-        .map(|(name, _, quantity, statistic, _)| {
-            let (quantity, statistic) = (quantity.key(), statistic.key());
-            let same =
-                |value: &&gershun::outcome::Value| value.quantity == quantity && value.statistic == statistic;
-            let found = outcome.values.iter().find(same).and_then(|value| value.estimate.as_ref().ok());
-            found.map(|estimate| estimate.value).ok_or_else(|| format!("{name} has no value").into())
-        })
-        .collect()
+    JUDGED.iter().map(|judged| Ok(found(&outcome, judged)?.value)).collect()
+}
+
+/// The interval of a judged quantity.
+fn found(
+    outcome: &Outcome,
+    (name, _, quantity, statistic, _): &(&str, CustomSubject, Quantity, Statistic, f64),
+) -> Result<Interval, Box<dyn Error>> {
+    let (quantity, statistic) = (quantity.key(), statistic.key());
+    let same = |value: &&Value| value.quantity == quantity && value.statistic == statistic;
+    let found = outcome.values.iter().find(same).and_then(|value| value.estimate.as_ref().ok());
+    found.copied().ok_or_else(|| format!("{name} has no value").into())
 }
 
 fn write(
@@ -136,6 +157,7 @@ fn write(
     limits: &[f64],
     counts: &[[usize; 3]],
     families: usize,
+    covered: &[[usize; 3]],
     alpha: f64,
 ) -> Result<(), Box<dyn Error>> {
     let mut csv = "quantity,truth,limit_at_least,runs,right,wrong,undecided\n".to_owned();
@@ -145,22 +167,43 @@ fn write(
         writeln!(csv, "{name},{value},{limit},{seeds},{right},{wrong},{open}")?;
         writeln!(table, "| {name} | {value:.3} | {limit:.3} | {right} | {wrong} | {open} |")?;
     }
+    let mut coverage = "quantity,truth,runs,blocks,covered,below,above\n".to_owned();
+    let mut intervals = String::new();
+    for ((judged, value), [inside, below, above]) in JUDGED.iter().zip(truth).zip(covered) {
+        let (name, percent) = (judged.0, |count: &usize| 100.0 * *count as f64 / seeds as f64);
+        writeln!(coverage, "{name},{value},{seeds},{COVERAGE_BLOCKS},{inside},{below},{above}")?;
+        let shares = [inside, below, above].map(percent).map(|share| format!("{share:.1} %"));
+        writeln!(intervals, "| {name} | {value:.3} | {} |", shares.join(" | "))?;
+    }
     let expected = alpha * seeds as f64;
     let most = expected + 5.0 * (expected * (1.0 - alpha)).sqrt();
     let share = 100.0 * families as f64 / seeds as f64;
     let text = format!(
         "# Risk of a wrong verdict\n\n{seeds} seeds of a small room, each judged on eight limits just beside the truth, at most\n{MOST_BLOCKS} blocks, a look at every doubling from 32 on. Made by `cargo run --release --example risk {seeds}`.\n\n\
          | quantity | truth | limit, at least | right | wrong | undecided |\n|---|---|---|---|---|---|\n{table}\n\
-         Runs with any wrong verdict: {families}, {share:.1} %; stated: at most {:.0} % for all verdicts of a room together.\nThe truth is one run of {TRUTH_BLOCKS} blocks. An undecided verdict is not a wrong one: it asks for more blocks.\n",
-        100.0 * alpha
+         Runs with any wrong verdict: {families}, {share:.1} %; stated: at most {:.0} % for all verdicts of a room together.\nAn undecided verdict is not a wrong one: it asks for more blocks.\n\n\
+         ## Coverage\n\nHow often the {:.0} % interval of one quantity alone contains the truth after {COVERAGE_BLOCKS} blocks, lies below it, or above.\nU0's is made of the contrasts of all points, the upper end corrected for their number: it may cover more.\n\n\
+         | quantity | truth | contains it | below | above |\n|---|---|---|---|---|\n{intervals}\n\
+         The truth is one run of {TRUTH_BLOCKS} blocks. Illuminances in lx, maintained.\n",
+        100.0 * alpha,
+        100.0 - 100.0 * alpha,
     );
     let folder = Path::new("reports/risk");
     std::fs::create_dir_all(folder)?;
     std::fs::write(folder.join("risk.csv"), csv)?;
+    std::fs::write(folder.join("coverage.csv"), coverage)?;
     std::fs::write(folder.join("README.md"), &text)?;
     println!("{text}");
     if families as f64 > most {
         return Err(format!("{families} runs with a wrong verdict, more than {most:.0}").into());
+    }
+    for ([inside, ..], (name, ..)) in covered.iter().zip(&JUDGED) {
+        // 5 σ below the nominal share; only U0 may lie above.
+        if (seeds as usize - inside) as f64 > most {
+            return Err(
+                format!("the interval of {name} contains the truth in {inside} of {seeds} runs").into()
+            );
+        }
     }
     Ok(())
 }

@@ -38,9 +38,15 @@ pub enum Command {
   gershun check --format json scenes/box > box.json
   gershun check --blocks 256 --seed 7 scenes/box      # the same bytes every time")]
     Check(Check),
+    /// Solve the luminance field once and keep it in a file
+    #[command(after_help = crate::args_solve::EXAMPLES)]
+    Solve(crate::args_solve::Solve),
     /// Luminance pictures of the cameras
     #[command(after_help = crate::args_view::EXAMPLES)]
     View(crate::args_view::View),
+    /// Luminance from every direction at a point: the luminance body and the light vector
+    #[command(after_help = crate::args_body::EXAMPLES)]
+    Body(crate::args_body::Body),
     /// Start a new project from a small commented example
     #[command(after_help = "Example:
   gershun new my-office && gershun check my-office")]
@@ -48,8 +54,12 @@ pub enum Command {
         /// Folder to make; it must not exist
         dir: PathBuf,
     },
-    /// Print the JSON Schema of result.json
-    Schema,
+    /// Print the JSON Schema of result.json, or of norm files
+    Schema {
+        /// Of which file
+        #[arg(value_enum, default_value = "result")]
+        of: Schema,
+    },
     /// Glare of luminance images, or of a project's observers
     #[command(
         after_help = "Every index is printed with its convention; one that is not defined here says why.
@@ -71,6 +81,9 @@ Examples:
     Explain {
         /// Code as printed in brackets, e.g. flux-mismatch
         code: String,
+        /// Language of the explanation
+        #[arg(long, value_enum, default_value_t = crate::args_lamp::LangChoice::En)]
+        lang: crate::args_lamp::LangChoice,
     },
     /// The norms that gershun knows
     #[command(subcommand)]
@@ -208,6 +221,15 @@ pub enum Format {
     Junit,
     /// SARIF, for code scanners
     Sarif,
+}
+
+/// What a JSON Schema describes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Schema {
+    /// result.json
+    Result,
+    /// A norm file, read as JSON
+    Norm,
 }
 
 /// What undecided requirements mean to a script.

@@ -25,7 +25,7 @@ Examples:
         /// What is printed
         #[arg(long, value_enum, default_value_t = InfoFormat::Human)]
         format: InfoFormat,
-        /// Language of the words; findings are English
+        /// Language of what is printed for people
         #[arg(long, value_enum, default_value_t = LangChoice::En)]
         lang: LangChoice,
     },
@@ -43,7 +43,7 @@ Examples:
         /// What is printed
         #[arg(long, value_enum, default_value_t = LintFormat::Human)]
         format: LintFormat,
-        /// Language of the words; findings are English
+        /// Language of what is printed for people
         #[arg(long, value_enum, default_value_t = LangChoice::En)]
         lang: LangChoice,
     },
@@ -63,6 +63,9 @@ Examples:
         /// What is printed
         #[arg(long, value_enum, default_value_t = TableFormat::Human)]
         format: TableFormat,
+        /// Language of what is printed for people
+        #[arg(long, value_enum, default_value_t = LangChoice::En)]
+        lang: LangChoice,
     },
     /// Polar diagram as SVG: C0–C180 and C90–C270, cd and cd/klm, beam angles
     #[command(after_help = "Example:
@@ -73,6 +76,9 @@ Examples:
         /// File to write [default: standard output]
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
+        /// Language of the words in the drawing
+        #[arg(long, value_enum, default_value_t = LangChoice::En)]
+        lang: LangChoice,
     },
     /// LM-63 to EULUMDAT or back; prints what the new file does not hold
     #[command(
@@ -87,6 +93,9 @@ Example:
         input: PathBuf,
         /// File to write, .ies or .ldt
         output: PathBuf,
+        /// Language of what is printed for people
+        #[arg(long, value_enum, default_value_t = LangChoice::En)]
+        lang: LangChoice,
     },
     /// Luminous intensity of luminaires as installed, with what their housing reflects, as .ldt or .ies
     #[command(
@@ -130,6 +139,9 @@ pub struct FarFieldArgs {
     /// What is printed
     #[arg(long, value_enum, default_value_t = InfoFormat::Human)]
     pub format: InfoFormat,
+    /// Language of what is printed for people
+    #[arg(long, value_enum, default_value_t = LangChoice::En)]
+    pub lang: LangChoice,
     /// Let the project name files outside its folder
     #[arg(long)]
     pub allow_outside: bool,

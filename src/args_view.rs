@@ -19,6 +19,9 @@ pub struct View {
     /// Unbiased mean of this many blocks (at least 2), with a standard error for every pixel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub blocks: Option<u32>,
+    /// Take the pictures from a field that `solve` kept: its file or folder
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["blocks", "seed"])]
+    pub field: Option<PathBuf>,
     /// Columns and rows instead of the camera's own, e.g. 600x400
     #[arg(long, value_name = "WxH", value_parser = pixels)]
     pub size: Option<Pixels>,
@@ -57,6 +60,7 @@ viewpoints are shown where they are named, and all of them where the project has
 Examples:
   gershun view scenes/office
   gershun view --preview --format png --camera \"Seat 1\" scenes/office
+  gershun solve scenes/office && gershun view --field out/office scenes/office
   gershun view --format hdr --size 1200x1200 scenes/office      # for evalglare
   gershun view --blocks 64 --format exr,svg --light-scene evening scenes/office";
 

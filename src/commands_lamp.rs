@@ -7,7 +7,7 @@ use gershun::lamp::convert::Target;
 use gershun::lamp::{self, RULES, Severity, installed, rules};
 use gershun::photometry::Finding;
 use gershun::project::{LoadOptions, Project, is_same_file, load, read_photometry, suggestion};
-use gershun::report::words::Lang;
+use gershun::report::words::{Lang, found};
 use gershun::report::{lamp as report, write_file};
 use gershun::solve::far_field::{self, FarDemand};
 use rayon::prelude::*;
@@ -19,9 +19,13 @@ pub fn run(command: &Lamp) -> u8 {
     match command {
         Lamp::Info { files, format, lang } => info(files, *format, lang.lang()),
         Lamp::Lint { files, format, lang } => lint(files, *format, lang.lang()),
-        Lamp::UgrTable { files, shr, format } => ugr_table(files, *shr, *format),
-        Lamp::Polar { file, out } => polar(file, out.as_deref()).unwrap_or_else(|error| complain(&error)),
-        Lamp::Convert { input, output } => convert(input, output).unwrap_or_else(|error| complain(&error)),
+        Lamp::UgrTable { files, shr, format, lang } => ugr_table(files, *shr, *format, lang.lang()),
+        Lamp::Polar { file, out, lang } => {
+            polar(file, out.as_deref(), lang.lang()).unwrap_or_else(|error| complain(&error))
+        }
+        Lamp::Convert { input, output, lang } => {
+            convert(input, output, lang.lang()).unwrap_or_else(|error| complain(&error))
+        }
         Lamp::FarField(args) => far_field(args).unwrap_or_else(|error| complain(&error)),
     }
 }
@@ -77,7 +81,7 @@ fn lint(files: &[PathBuf], format: LintFormat, lang: Lang) -> u8 {
     opened.max(printed).max(if failed { FAILS } else { COMPLIES })
 }
 
-fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat) -> u8 {
+fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat, lang: Lang) -> u8 {
     let (batch, mut worst) = read_all(files);
     let mut tables = Vec::new();
     let mut text = String::new();
@@ -85,7 +89,9 @@ fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat) -> u8 {
         let lamps = match &file.read {
             Ok(lamps) => lamps,
             Err(finding) => {
-                worst = complain(&format!("{}: {finding}", file.file));
+                let [message, consequence] =
+                    [&finding.message, &finding.consequence].map(|text| found(lang, text));
+                worst = complain(&format!("{}: {message}: {consequence}", file.file));
                 continue;
             }
         };
@@ -99,10 +105,13 @@ fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat) -> u8 {
                         &lamp.file,
                         lamp.photometry.distribution.flux().0,
                         &table,
+                        lang,
                     ));
                     tables.push((lamp.file.clone(), table));
                 }
-                Err(undefined) => worst = complain(&format!("{}: {undefined}", lamp.file)),
+                Err(undefined) => {
+                    worst = complain(&format!("{}: {}", lamp.file, found(lang, &undefined.reason)));
+                }
             }
         }
     }
@@ -123,8 +132,8 @@ fn read_only(path: &Path) -> Result<lamp::Lamp, String> {
     Ok(only)
 }
 
-fn polar(file: &Path, out: Option<&Path>) -> Result<u8, String> {
-    let svg = report::polar(&read_only(file)?);
+fn polar(file: &Path, out: Option<&Path>, lang: Lang) -> Result<u8, String> {
+    let svg = report::polar(&read_only(file)?, lang);
     let Some(out) = out else {
         return Ok(say(&svg));
     };
@@ -132,7 +141,7 @@ fn polar(file: &Path, out: Option<&Path>) -> Result<u8, String> {
     Ok(COMPLIES)
 }
 
-fn convert(input: &Path, output: &Path) -> Result<u8, String> {
+fn convert(input: &Path, output: &Path, lang: Lang) -> Result<u8, String> {
     let target = target_of(output)?;
     if is_same_file(input, output) {
         return Err(format!("{} would replace itself\n  hint: name another file", input.display()));
@@ -141,8 +150,7 @@ fn convert(input: &Path, output: &Path) -> Result<u8, String> {
     let converted = lamp::convert::convert(&lamp.photometry, target)
         .map_err(|error| format!("{}: {error}", input.display()))?;
     write_file(output, &converted.bytes).map_err(|error| error.to_string())?;
-    let told: Vec<String> = converted.dropped.iter().map(|what| format!("dropped: {what}\n")).collect();
-    Ok(say(&format!("{}\n{}", output.display(), told.concat())))
+    Ok(say(&format!("{}\n{}", output.display(), report::dropped(&converted.dropped, lang))))
 }
 
 /// A line for each photometric file of a project that has faults.
@@ -228,7 +236,7 @@ fn far_field(args: &FarFieldArgs) -> Result<u8, String> {
         text.push_str(&format!("{}\n", out.display()));
     }
     Ok(match args.format {
-        InfoFormat::Human => say(&(text + &report::far_field_text(&field))),
+        InfoFormat::Human => say(&(text + &report::far_field_text(&field, args.lang.lang()))),
         InfoFormat::Json => print(report::far_field_json(&field)),
     })
 }
@@ -241,8 +249,8 @@ fn target_of(output: &Path) -> Result<Target, String> {
 }
 
 /// The explanation of a finding's code.
-pub fn explain(code: &str) -> u8 {
-    if let Some(text) = report::explanation(code) {
+pub fn explain(code: &str, lang: Lang) -> u8 {
+    if let Some(text) = report::explanation(code, lang) {
         return say(&text);
     }
     let hint = suggestion(code, RULES.iter().map(|rule| rule.code));

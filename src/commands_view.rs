@@ -3,17 +3,19 @@
 use std::path::Path;
 use std::time::Duration;
 
+use gershun::field::store::StoredField;
 use gershun::image::{LuminanceImage, Projection, View};
 use gershun::measure::weights;
 use gershun::project::{LoadOptions, Project, World, load, suggestion};
 use gershun::query::Demand;
 use gershun::report::Lang;
 use gershun::report::picture::{Album, Format, Shot, Way, write};
-use gershun::solve::picture::{Detail, Exposure, expose, omissions, render, replicate};
+use gershun::solve::picture::{Detail, Exposure, expose, from_store, omissions, render, replicate};
 use gershun::solve::{Effort, Method, Prepared, prepare};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args_view::{FormatChoice, View as Arguments};
+use crate::commands_solve::stored;
 use crate::{BAD_INPUT, COMPLIES, complain, complain_of_all, folder_name, remark, say, use_threads};
 
 /// Columns and rows of a fisheye at a viewpoint.
@@ -55,7 +57,11 @@ pub fn run(arguments: &Arguments) -> u8 {
         Ok(wanted) => wanted,
         Err(message) => return complain(&message),
     };
-    let shots = take_all(&project, &wanted, arguments);
+    let stored = match arguments.field.as_deref().map(|path| stored(path, &project)).transpose() {
+        Ok(stored) => stored,
+        Err(message) => return complain(&message),
+    };
+    let shots = take_all(&project, &wanted, stored, arguments);
     let album =
         Album { project: &project.info.name, seed: project.accuracy.seed, inputs: &project.inputs, shots };
     let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(folder_name(&project.info.name)));
@@ -172,8 +178,17 @@ fn sized(view: View, own: [usize; 2], asked: Option<[usize; 2]>) -> Result<([usi
     Ok((size, view))
 }
 
-fn take_all(project: &Project, wanted: &[Wanted], arguments: &Arguments) -> Vec<Shot> {
+fn take_all(
+    project: &Project,
+    wanted: &[Wanted],
+    stored: Option<Vec<StoredField>>,
+    arguments: &Arguments,
+) -> Vec<Shot> {
     let demand = Demand::default();
+    let mut stored: Vec<Option<StoredField>> = match stored {
+        Some(fields) => fields.into_iter().map(Some).collect(),
+        None => project.worlds.iter().map(|_| None).collect(),
+    };
     let seed = project.accuracy.seed;
     let mut shots = Vec::with_capacity(wanted.len());
     for (index, world) in project.worlds.iter().enumerate() {
@@ -186,8 +201,14 @@ fn take_all(project: &Project, wanted: &[Wanted], arguments: &Arguments) -> Vec<
                 let effort = Effort { gather: 1, ..Effort::default() };
                 Source::Blocks(prepare(&world.scene, &demand, Method::Links, effort, seed), blocks)
             }
-            None if arguments.preview => Source::Field(expose(&world.scene, seed), Detail::Stored),
-            None => Source::Field(expose(&world.scene, seed), Detail::Exact),
+            None => {
+                let exposure = match stored[index].take() {
+                    Some(stored) => from_store(&world.scene, stored),
+                    None => expose(&world.scene, seed),
+                };
+                let detail = if arguments.preview { Detail::Stored } else { Detail::Exact };
+                Source::Field(exposure, detail)
+            }
         };
         for wanted in here {
             shots.push(take(project, world, wanted, &source, arguments.quiet));

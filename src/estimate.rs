@@ -2,7 +2,7 @@
 //! interval of a ratio. Points share rays within a block, so statistics are always of the
 //! *reported* quantity's block values, never combined from point errors.
 
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Mean of independent block values with its standard error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,6 +53,18 @@ pub fn quantile(p: f64, df: usize) -> f64 {
         return z + (z * z * z + z) / (4.0 * df as f64);
     }
     StudentsT::new(0.0, 1.0, df as f64).expect("positive degrees of freedom").inverse_cdf(p)
+}
+
+/// Scheffé's multiplier of a standard error: with probability 1 − `alpha` all linear combinations of `parts`
+/// correlated means from `n` blocks lie within it of their truth at once.
+/// T² = p (n − 1)/(n − p) · F(1 − α; p, n − p), which is Student's t for one part.
+pub fn scheffe(alpha: f64, parts: usize, n: usize) -> f64 {
+    if parts == 0 || n <= parts {
+        return f64::INFINITY;
+    }
+    let (p, rest) = (parts as f64, (n - parts) as f64);
+    let f = FisherSnedecor::new(p, rest).expect("positive degrees of freedom").inverse_cdf(1.0 - alpha);
+    (p * (n - 1) as f64 / rest * f).sqrt()
 }
 
 /// Means of x and y over blocks with the (co)variances of the means.
@@ -130,6 +142,33 @@ mod tests {
         for df in [100, 4_999, 5_000, 1_000_000] {
             assert!(quantile(0.975, df) > 1.959_963, "df {df}");
         }
+    }
+
+    /// Catches: a multiplier of one combination for a promise about all of them.
+    #[test]
+    fn scheffes_bounds_hold_for_all_combinations_at_once() {
+        assert!((scheffe(0.05, 1, 64) - quantile(0.975, 63)).abs() < 1e-6, "one part: Student's t");
+        assert!((scheffe(0.05, 3, 64) - 2.9234).abs() < 2e-3, "{}", scheffe(0.05, 3, 64));
+        assert!(scheffe(0.05, 3, 3).is_infinite());
+        // Two independent parts of mean 1: how often does the worst direction of 180 miss the truth?
+        let (mut missed, mut missed_by_t, runs) = (0, 0, 1000);
+        for run in 0..runs {
+            let mut rng = Rng::new(6, run, 0);
+            let n = 32;
+            let parts: [Vec<f64>; 2] = std::array::from_fn(|_| (0..n).map(|_| 0.5 + rng.uniform()).collect());
+            let worst = (0..180).map(|degree| {
+                let (s, c) = f64::from(degree).to_radians().sin_cos();
+                let sum: Vec<f64> = parts[0].iter().zip(&parts[1]).map(|(x, y)| c * x + s * y).collect();
+                let estimate = Estimate::from_blocks(&sum);
+                (estimate.value - c - s).abs() / estimate.se
+            });
+            let worst = worst.fold(0.0, f64::max);
+            missed += usize::from(worst > scheffe(0.05, 2, n));
+            missed_by_t += usize::from(worst > quantile(0.975, n - 1));
+        }
+        // 5 % of 1000 with 5 σ of the binomial: 50 ± 34.
+        assert!((16..=84).contains(&missed), "{missed}");
+        assert!(missed_by_t > 84, "Student's t promises too much: {missed_by_t}");
     }
 
     #[test]

@@ -6,7 +6,8 @@ mod outline;
 
 use glam::{DVec2, DVec3};
 
-use outline::{crossing, distance_to_outline, inside};
+use outline::crossing;
+pub use outline::{distance_to_outline, inside};
 
 /// Largest number of points of one grid, left-out points included.
 pub const MAX_POINTS: usize = 1_000_000;

@@ -102,6 +102,7 @@ pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
         subject: by.subject.clone(),
         quantity: by.quantity.key(),
         others_pass: others.all(|r| r.verdict == Verdict::Pass),
+        groups: None,
     })
 }
 

@@ -217,6 +217,7 @@ fn solve_world(
             emitters: prepared.emitters(),
             seen: &seen,
             tables: &tables,
+            group_factors: &[],
             alpha,
             joint_alpha: judge::look_alpha(alpha, look_at(sheets.len(), settings.least_blocks)),
         };

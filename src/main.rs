@@ -3,11 +3,15 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the one place that prints")]
 
 mod args;
+mod args_body;
 mod args_glare;
 mod args_lamp;
+mod args_solve;
 mod args_view;
+mod commands_body;
 mod commands_glare;
 mod commands_lamp;
+mod commands_solve;
 mod commands_view;
 
 use std::io::{IsTerminal, Write};
@@ -25,7 +29,7 @@ use gershun::report::{self, Colour, Lang, Style};
 use gershun::{Progress, Watch};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm, Undecided};
+use crate::args::{Check, Cli, ColourChoice, Command, Format, Norm, Schema, Undecided};
 
 /// Exit codes of the contract with scripts.
 const COMPLIES: u8 = 0;
@@ -38,11 +42,14 @@ fn main() -> ExitCode {
     let code = match Cli::parse().command {
         Command::Check(check) => run_checks(&check),
         Command::New { dir } => new_project(&dir),
-        Command::Schema => say(report::schema()),
+        Command::Schema { of: Schema::Result } => say(report::schema()),
+        Command::Schema { of: Schema::Norm } => say(norm::schema()),
         Command::Glare(command) => commands_glare::run(&command),
+        Command::Solve(solve) => commands_solve::run(&solve),
+        Command::Body(body) => commands_body::run(&body),
         Command::View(view) => commands_view::run(&view),
         Command::Lamp(command) => commands_lamp::run(&command),
-        Command::Explain { code } => commands_lamp::explain(&code),
+        Command::Explain { code, lang } => commands_lamp::explain(&code, lang.lang()),
         Command::Norm(Norm::List) => list_norms(),
         Command::Norm(Norm::Show { name, row }) => show_norm(&name, row.as_deref()),
         Command::Norm(Norm::Explain { name, row }) => explain_norm(&name, row.as_deref()),

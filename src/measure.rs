@@ -5,9 +5,11 @@
 pub mod area;
 pub mod flux;
 pub mod glare_sources;
+pub mod intensity;
 pub mod room_ugr;
 pub mod view;
 
+use crate::norm::Light;
 use crate::outcome::Interval;
 use crate::project::{LightScene, Room, World};
 use crate::scene::Channel;
@@ -65,6 +67,14 @@ impl Answers<'_> {
         self.sheets.len()
     }
 
+    /// Block values of a row, of the light that counts.
+    pub fn counted(&self, row: usize, weights: &[f64], light: Light) -> Vec<f64> {
+        match light {
+            Light::All => self.total(row, weights),
+            Light::Direct => self.part(row, weights, Part::Direct),
+        }
+    }
+
     /// Block values of a row: all parts, weighted by channel.
     pub fn total(&self, row: usize, weights: &[f64]) -> Vec<f64> {
         let span = self.channels * PARTS;
@@ -94,6 +104,22 @@ impl Answers<'_> {
         let blocks = self.part(row, weights, part);
         blocks.iter().sum::<f64>() / blocks.len().max(1) as f64
     }
+}
+
+/// Weights of the channels in an emergency: the group's factor, the share of the flux that the type has
+/// left then, and the maintenance factor. Surfaces that shine of themselves, and luminaires without
+/// emergency output, are dark.
+pub fn emergency_weights(world: &World, light_scene: &LightScene, room: &Room) -> Vec<f64> {
+    let scene = &world.scene;
+    let maintained = weights(world, light_scene, room, true);
+    let share = |channel: &Channel| match channel {
+        Channel::Luminaires { kind, .. } => {
+            let of_kind = scene.luminaires.iter().find(|l| l.kind.name == *kind);
+            of_kind.and_then(|l| l.kind.emergency).unwrap_or(0.0)
+        }
+        Channel::Surfaces { .. } => 0.0,
+    };
+    scene.channels.iter().zip(maintained).map(|(channel, weight)| weight * share(channel)).collect()
 }
 
 /// Weights of the channels for a light scene: the group's factor, and for maintained values

@@ -1,6 +1,7 @@
 //! The observers of a project alone: their glare in every direction, by any convention. Areas and
 //! requirements are left out, so that only the light at the eyes is solved for.
 
+pub mod body;
 pub mod cards;
 pub mod map;
 

@@ -3,13 +3,18 @@
 //! nobody needs to know of norms or observers until the answers are measured.
 
 mod areas;
+mod hidden;
+mod lattice;
+mod norm_areas;
 mod requirements;
+mod whole_room;
+mod zones;
 
 use glam::DVec3;
 
 use crate::grid::{Grid, GridError};
 use crate::outcome::{Bound, Modified};
-use crate::project::{AreaKind, Place, Project, World};
+use crate::project::{AreaKind, AreaShape, Modification, Place, Project, World};
 use crate::quantity::{Property, Quantity, Statistic};
 use crate::query::{Demand, Kernel, Receiver};
 
@@ -48,8 +53,12 @@ pub struct PlannedArea {
     pub of: Option<String>,
     /// Row of the norm by which it is judged.
     pub row: Option<String>,
+    /// Its own modification of the row's illuminance, or that of its task.
+    pub modified: Option<Modification>,
     /// Light scene by which it is judged.
     pub light_scene: usize,
+    /// Where it lies.
+    pub shape: AreaShape,
     /// Points.
     pub grid: Grid,
     /// Quantities with the rows that answer them.
@@ -138,6 +147,15 @@ pub enum Subject {
     ColourRendering,
     /// Another declared property of the room's luminaires.
     Declared(Property),
+    /// Emergency intensity of the luminaires of a type that hang in a class of heights.
+    Intensity {
+        /// Luminaire type.
+        kind: String,
+        /// Mounting heights from and below, m above the floor.
+        heights_m: [f64; 2],
+        /// Zone, degrees from straight down.
+        zone_deg: [f64; 2],
+    },
     /// Nothing in the project lets it be assessed; the reason.
     Missing(String),
 }

@@ -37,6 +37,8 @@ pub enum Quantity {
     },
     /// Unified glare rating, 1.
     Ugr,
+    /// Luminous intensity of a luminaire in a zone about the vertical, cd.
+    Intensity,
     /// General colour rendering index R_a, 1: declared, never computed.
     ColourRendering,
     /// Discomfort index M of older Russian norms, 1: M = 10^((UGR + 4.8)/16), from the table UGR.
@@ -174,6 +176,7 @@ impl Quantity {
         matches!(
             self,
             Self::Ugr
+                | Self::Intensity
                 | Self::ColourRendering
                 | Self::DiscomfortIndex
                 | Self::Declared(_)
@@ -196,6 +199,7 @@ impl Quantity {
             ("E_sph", None) => Some(Self::Spherical),
             ("modelling", None) => Some(Self::Modelling),
             ("UGR", None) => Some(Self::Ugr),
+            ("I", None) => Some(Self::Intensity),
             ("R_a", None) => Some(Self::ColourRendering),
             ("M", None) => Some(Self::DiscomfortIndex),
             (name, None) if Property::ALL.iter().any(|property| property.key() == name) => {
@@ -228,6 +232,7 @@ impl Quantity {
             Self::Modelling => "modelling".into(),
             Self::Luminance { azimuth_deg, tilt_deg } => format!("L@{azimuth_deg},{tilt_deg}"),
             Self::Ugr => "UGR".into(),
+            Self::Intensity => "I".into(),
             Self::ColourRendering => "R_a".into(),
             Self::DiscomfortIndex => "M".into(),
             Self::Declared(property) => property.key().into(),
@@ -246,6 +251,7 @@ impl Quantity {
             | Self::Hemispherical
             | Self::Spherical => "lx",
             Self::Luminance { .. } => "cd/m²",
+            Self::Intensity => "cd",
             Self::Declared(Property::Pulsation) | Self::NotComputed(Unmeasured::DaylightFactor) => "%",
             Self::Modelling
             | Self::Ugr

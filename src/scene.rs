@@ -1,7 +1,10 @@
 //! A scene is one closed world of light: geometry, materials, luminaires and the tracer over them,
 //! validated once. It knows no norm, no observer and no file.
 
+use std::sync::Arc;
+
 use glam::DVec3;
+use sha2::{Digest, Sha256};
 
 use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::{Simd, Tracer};
@@ -23,6 +26,40 @@ pub struct Scene {
     pub channel_of: Vec<usize>,
     /// Ray tracer over `mesh`.
     pub tracer: Tracer,
+    /// Per surface: whether it is part of a luminaire's body.
+    of_a_body: Vec<bool>,
+}
+
+/// What a line of sight met of luminaires' bodies since it was last turned by something else.
+///
+/// A luminaire's own light passes its body as if it were not there until something reflects it. Traced
+/// against the light: whoever has met a body, by passing or by reflection, has seen that luminaire
+/// before or never will on this line.
+#[derive(Clone, Debug, Default)]
+pub struct BodiesMet(Vec<u32>);
+
+impl BodiesMet {
+    /// The line goes on straight behind a pane.
+    #[inline]
+    pub fn passed(&mut self, scene: &Scene, triangle: u32) {
+        let surface = scene.tracer.surface(triangle);
+        if scene.of_a_body[surface as usize] {
+            self.0.push(surface);
+        }
+    }
+
+    /// The line was turned by a mirror.
+    #[inline]
+    pub fn reflected(&mut self, scene: &Scene, triangle: u32) {
+        self.0.clear();
+        self.passed(scene, triangle);
+    }
+
+    /// Whether nothing more is to be seen of a luminaire along this line.
+    #[inline]
+    pub fn shut(&self, luminaire: &Luminaire) -> bool {
+        !self.0.is_empty() && self.0.iter().any(|surface| luminaire.body.contains(surface))
+    }
 }
 
 /// The unit that is solved separately at initial flux: one luminaire group of one type, or one
@@ -109,7 +146,43 @@ impl Scene {
             }
         }
         let tracer = Tracer::build_with(&mesh, &materials, simd);
-        Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer })
+        let mut of_a_body = vec![false; mesh.surfaces.len()];
+        for &surface in luminaires.iter().flat_map(|luminaire| &luminaire.body) {
+            of_a_body[surface as usize] = true;
+        }
+        Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer, of_a_body })
+    }
+
+    /// SHA-256 of everything that decides how light goes: geometry, materials and luminaires at initial
+    /// flux. Cameras, viewpoints, areas, light scenes and norms do not enter.
+    pub fn fingerprint(&self) -> String {
+        let mut hasher = Sha256::new();
+        for position in &self.mesh.positions {
+            position.to_array().iter().for_each(|x| hasher.update(x.to_bits().to_le_bytes()));
+        }
+        for triangle in &self.mesh.triangles {
+            triangle.vertices.iter().for_each(|vertex| hasher.update(vertex.to_le_bytes()));
+            hasher.update(triangle.surface.to_le_bytes());
+        }
+        // Debug prints numbers to the last bit.
+        let mut add = |text: String| {
+            hasher.update((text.len() as u64).to_le_bytes());
+            hasher.update(text);
+        };
+        add(format!("{:?} {:?} {:?}", self.mesh.surfaces, self.materials, self.channels));
+        for (index, luminaire) in self.luminaires.iter().enumerate() {
+            let known = self.luminaires[..index].iter().rposition(|l| Arc::ptr_eq(&l.kind, &luminaire.kind));
+            add(match known {
+                Some(before) => format!("as {before}"),
+                None => format!("{:?} {:?}", luminaire.kind.distribution, luminaire.kind.opening),
+            });
+            let (position, axes) = (luminaire.position, luminaire.world_from_luminaire);
+            add(format!(
+                "{position:?} {axes:?} {:?} {} {:?}",
+                luminaire.dim, luminaire.group, luminaire.body
+            ));
+        }
+        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
     /// The scattering model of triangle `index`.

@@ -232,12 +232,16 @@ fn f32_and_obvhs_live_in_the_ray_tracer() {
 /// above: `project`'s structs lie below `plan`, `measure` and `outcome`; materials below geometry.
 const ORDER: &[&str] = &[
     "main",
+    "commands_body",
     "commands_glare",
     "commands_lamp",
     "commands_view",
+    "commands_solve",
     "args",
+    "args_body",
     "args_glare",
     "args_lamp",
+    "args_solve",
     "args_view",
     "lib",
     "report",

@@ -65,7 +65,9 @@ fn latin_sentences(text: &str) -> Vec<String> {
 #[test]
 fn no_sentence_of_a_russian_report_is_english() {
     let mut found = Vec::new();
-    projects(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"), &mut found);
+    for folder in ["scenes", "tests/projects"] {
+        projects(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut found);
+    }
     assert!(found.len() >= 2, "{found:?}");
     found.sort();
     for project in found {

@@ -4,6 +4,7 @@
 
 mod patches;
 mod smooth;
+pub mod store;
 
 use glam::DVec3;
 

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 /// Even–odd rule.
-pub(super) fn inside(corners: &[DVec2], place: DVec2) -> bool {
+pub fn inside(corners: &[DVec2], place: DVec2) -> bool {
     let mut inside = false;
     for (k, a) in corners.iter().enumerate() {
         let b = corners[(k + 1) % corners.len()];
@@ -15,7 +15,7 @@ pub(super) fn inside(corners: &[DVec2], place: DVec2) -> bool {
 }
 
 /// Distance to the nearest edge, in the unit of the corners.
-pub(super) fn distance_to_outline(corners: &[DVec2], place: DVec2) -> f64 {
+pub fn distance_to_outline(corners: &[DVec2], place: DVec2) -> f64 {
     let distance = |k: usize| {
         let (a, edge) = (corners[k], corners[(k + 1) % corners.len()] - corners[k]);
         let part = ((place - a).dot(edge) / edge.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);

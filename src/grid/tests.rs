@@ -40,6 +40,60 @@ fn from_a_shelf_to_a_hall_points_suffice_and_cells_stay_square_enough() {
     assert_eq!([office.columns, office.rows], [10, 6]);
 }
 
+/// Catches: an even number, the shorter side taken for d in a long area, a count next to the nearest odd one.
+#[test]
+fn sports_grids_are_odd_and_nearest_to_the_rule_from_a_shelf_to_a_hall() {
+    let sizes = [0.4, 0.7, 1.0, 1.6, 3.0, 5.5, 8.0, 15.0, 19.9, 20.0, 28.0, 50.0, 100.0];
+    for x in sizes {
+        for y in sizes {
+            let grid = floor(x, y, GridRule::EnSports, 0.0).unwrap();
+            assert!(grid.columns % 2 == 1 && grid.rows % 2 == 1, "{x} × {y}");
+            // d is the longer side, however long; no odd number lies nearer to d/p.
+            let (longer, count) = if x >= y { (x, grid.columns) } else { (y, grid.rows) };
+            let exact = longer / (0.2 * 5f64.powf(longer.log10())).min(10.0);
+            assert!((count as f64 - exact).abs() <= 1.0 + 1e-9, "{x} × {y}: {count} for {exact}");
+            // The other side has the odd number nearest to its length over that spacing.
+            let (shorter, other) = if x >= y { (y, grid.rows) } else { (x, grid.columns) };
+            let wanted = shorter / (longer / count as f64);
+            assert!((other as f64 - wanted).abs() <= 1.0 + 1e-9, "{x} × {y}: {other} for {wanted}");
+        }
+    }
+    // A basketball court, 28 × 15 m.
+    let court = floor(28.0, 15.0, GridRule::EnSports, 0.0).unwrap();
+    assert_eq!([court.columns, court.rows], [13, 7]);
+}
+
+/// Catches: a border that is left out of the points and not of the sides by which they are counted, one on
+/// two sides only, a long area counted by its longer side.
+#[test]
+fn borders_are_left_out_of_every_rule_and_long_areas_count_by_their_shorter_side() {
+    for rule in [GridRule::En, GridRule::EnSports, GridRule::Step(0.7), GridRule::Count([5, 3])] {
+        for (x, y) in [(2.0, 1.6), (8.0, 5.0), (40.0, 6.0), (100.0, 60.0), (100.0, 1.5)] {
+            for border_m in [0.0, 0.1, 0.5] {
+                let grid = floor(x, y, rule, border_m).unwrap();
+                let inner = floor(x - 2.0 * border_m, y - 2.0 * border_m, rule, 0.0).unwrap();
+                assert_eq!([grid.columns, grid.rows], [inner.columns, inner.rows], "{rule:?} {x} × {y}");
+                for point in &grid.points {
+                    let [dx, dy] = grid.spacing_m.map(|spacing| 0.5 * spacing + border_m - 1e-9);
+                    let p = point.position;
+                    assert!(
+                        p.x >= dx && p.x <= x - dx && p.y >= dy && p.y <= y - dy,
+                        "{rule:?} {x} × {y}: {p}"
+                    );
+                }
+                let sum: DVec3 = grid.points.iter().map(|point| point.position).sum();
+                let centre = sum / grid.points.len() as f64;
+                assert!((centre - DVec3::new(0.5 * x, 0.5 * y, 0.0)).length() < 1e-9, "not in the middle");
+            }
+        }
+    }
+    // 40 × 6 m is long: p by 6 m, 0.70 m; by 40 m it would be 2.63 m.
+    let corridor = floor(40.0, 6.0, GridRule::En, 0.0).unwrap();
+    assert!(corridor.spacing_m[1] < 0.71 && corridor.rows == 9, "{:?}", corridor.spacing_m);
+    // The longer side may be coarser, up to cells of 2:1, never finer than the rule asks.
+    assert!(corridor.spacing_m[0] <= 0.71, "{:?}", corridor.spacing_m);
+}
+
 #[test]
 fn points_are_cell_centres_in_order_of_rows_inside_the_border() {
     let grid = floor(5.0, 3.0, GridRule::Count([4, 2]), 0.5).unwrap();

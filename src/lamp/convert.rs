@@ -31,8 +31,42 @@ impl Target {
 pub struct Converted {
     /// The new file.
     pub bytes: Vec<u8>,
-    /// What it does not hold or holds differently, one clause each.
-    pub dropped: Vec<String>,
+    /// What it does not hold or holds differently.
+    pub dropped: Vec<Dropped>,
+}
+
+/// A loss on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Dropped {
+    /// A light output ratio, 0 … 1, for which the new format has no place.
+    OutputRatio(f64),
+    /// The rated flux.
+    Flux {
+        /// Before.
+        was_lm: f64,
+        /// What the new file states.
+        is_lm: Option<f64>,
+    },
+    /// R_a.
+    ColourRendering(f64),
+    /// The power.
+    Power,
+    /// The luminous opening.
+    Opening {
+        /// Before.
+        was: Opening,
+        /// What the new file holds.
+        is: Opening,
+    },
+    /// The name.
+    Name {
+        /// Before.
+        was: String,
+        /// As it is written.
+        is: String,
+    },
+    /// What the source's format may hold beyond a [`Photometry`].
+    NotRead(Format, Target),
 }
 
 /// Why a conversion was not handed out.
@@ -89,67 +123,40 @@ fn check_intensities(before: &Photometry, after: &Photometry) -> Result<(), Conv
     Ok(())
 }
 
-fn dropped(before: &Photometry, after: &Photometry, target: Target) -> Vec<String> {
+fn dropped(before: &Photometry, after: &Photometry, target: Target) -> Vec<Dropped> {
     let mut dropped = Vec::new();
     let gone = |before: Option<f64>, after: Option<f64>| match (before, after) {
         (Some(before), Some(after)) => (before - after).abs() > 1e-6 * before.abs(),
         (Some(_), None) => true,
         (None, _) => false,
     };
-    let percent = |part: Option<f64>| part.map_or("none".to_owned(), |part| format!("{:.1} %", 100.0 * part));
-    if gone(before.lor, after.lor) {
-        dropped.push(format!("light output ratio {}: LM-63 has no place for it", percent(before.lor)));
+    if let Some(lor) = before.lor.filter(|_| gone(before.lor, after.lor)) {
+        dropped.push(Dropped::OutputRatio(lor));
     }
-    if gone(before.rated_flux_lm, after.rated_flux_lm) {
-        let lumens = |lm: Option<f64>| lm.map_or("none".to_owned(), |lm| format!("{lm:.1} lm"));
-        let (was, is) = (lumens(before.rated_flux_lm), lumens(after.rated_flux_lm));
-        dropped.push(format!("rated flux {was}: the new file states {is}"));
+    if let Some(was_lm) = before.rated_flux_lm.filter(|_| gone(before.rated_flux_lm, after.rated_flux_lm)) {
+        dropped.push(Dropped::Flux { was_lm, is_lm: after.rated_flux_lm });
     }
-    if gone(before.colour_rendering, after.colour_rendering) {
-        let ra = before.colour_rendering.unwrap_or_default();
-        dropped.push(format!("colour rendering R_a {ra}"));
+    if let Some(ra) =
+        before.colour_rendering.filter(|_| gone(before.colour_rendering, after.colour_rendering))
+    {
+        dropped.push(Dropped::ColourRendering(ra));
     }
     if gone(before.power_w, after.power_w) {
-        dropped.push("power".to_owned());
+        dropped.push(Dropped::Power);
     }
     if !same_opening(before.opening, after.opening) {
-        dropped.push(format!(
-            "luminous opening {}: the new file holds {}, so its luminance differs",
-            shown(before.opening),
-            shown(after.opening)
-        ));
+        dropped.push(Dropped::Opening { was: before.opening, is: after.opening });
     }
     if before.description.trim() != after.description.trim() {
-        dropped.push(format!("name '{}': written as '{}'", before.description, after.description));
+        dropped.push(Dropped::Name { was: before.description.clone(), is: after.description.clone() });
     }
-    let source = match (before.format, target) {
-        (Format::Eulumdat, Target::Ies) => {
-            "size of the luminaire, numbers, date, lamp names, colour, further lamp sets, tilt, direct ratios"
-        }
-        (Format::Eulumdat, Target::Ldt) => {
-            "size of the luminaire, numbers, date, lamp names, colour, further lamp sets, tilt; direct ratios become 0"
-        }
-        (Format::Tm33, _) => "spectra, colour other than R_a, equipment, custom data, comments",
-        (Format::Lm63 { .. }, _) => {
-            "keywords other than the names, tilt data, lamp count; all factors become 1"
-        }
-    };
-    dropped.push(format!("not carried over if present: {source}"));
+    dropped.push(Dropped::NotRead(before.format, target));
     dropped
 }
 
 fn same_opening(a: Opening, b: Opening) -> bool {
     let ((name_a, a), (name_b, b)) = (a.sizes(), b.sizes());
     name_a == name_b && a.iter().zip(&b).all(|((_, a), (_, b))| (a - b).abs() < 1e-6)
-}
-
-fn shown(opening: Opening) -> String {
-    let (name, sizes) = opening.sizes();
-    let sizes: Vec<String> = sizes
-        .iter()
-        .map(|(what, m)| format!("{} {m:.3} m", what.trim_end_matches("_m").replace('_', " ")))
-        .collect();
-    [name.to_owned(), sizes.join(", ")].join(" ").trim_end().to_owned()
 }
 
 #[cfg(test)]
@@ -194,9 +201,7 @@ mod tests {
                 );
             }
             assert!(same_opening(first.opening, third.opening));
-            assert!(
-                !ldt.dropped.iter().any(|what| what.starts_with("luminous") || what.starts_with("power"))
-            );
+            assert!(!ldt.dropped.iter().any(|what| matches!(what, Dropped::Opening { .. } | Dropped::Power)));
         }
     }
 
@@ -207,9 +212,12 @@ mod tests {
         photometry.opening = Opening::Rect { length_m: 1.2, width_m: 0.3, side_x_m: 0.0, side_y_m: 0.1 };
         photometry.lor = Some(0.7);
         photometry.colour_rendering = Some(80.0);
-        let told = convert(&photometry, Target::Ies).expect("converted").dropped.join("\n");
-        for what in ["luminous opening", "light output ratio 70.0 %", "R_a 80"] {
-            assert!(told.contains(what), "{told}");
-        }
+        let told = convert(&photometry, Target::Ies).expect("converted").dropped;
+        let [Dropped::OutputRatio(lor), Dropped::ColourRendering(ra), Dropped::Opening { was, .. }, ..] =
+            told[..]
+        else {
+            panic!("{told:?}")
+        };
+        assert_eq!(([lor, ra], was), ([0.7, 80.0], photometry.opening));
     }
 }

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use crate::photometry::{Format, IntensityDistribution, Opening, Photometry};
+use crate::photometry::{Format, IntensityDistribution, Opening, Photometry, Places};
 use crate::project::{LightScene, Project, World};
 use crate::scene::Scene;
 use crate::solve::far_field::FarField;
@@ -104,6 +104,7 @@ pub fn photometry(field: &FarField, chosen: &Chosen, description: &str) -> Optio
         power_w: (powers.len() == chosen.luminaires.len()).then(|| powers.iter().sum()),
         colour_rendering: None,
         distribution,
+        places: Places::default(),
         findings: Vec::new(),
     })
 }

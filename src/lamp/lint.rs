@@ -42,12 +42,14 @@ fn efficacy(photometry: &Photometry) -> Option<Finding> {
          energy balance, is wrong by as much"
             .to_owned()
     };
-    (!(low..=high).contains(&efficacy)).then(|| Finding::new("efficacy", None, message, consequence))
+    (!(low..=high).contains(&efficacy))
+        .then(|| Finding::new("efficacy", photometry.places.power, message, consequence))
 }
 
 fn no_power(photometry: &Photometry) -> Option<Finding> {
     let consequence = "efficacy and installed power per area cannot be computed";
-    photometry.power_w.is_none().then(|| Finding::new("no-power", None, "no power is stated", consequence))
+    let line = photometry.places.power;
+    photometry.power_w.is_none().then(|| Finding::new("no-power", line, "no power is stated", consequence))
 }
 
 fn light_output_ratio(photometry: &Photometry) -> Option<Finding> {
@@ -57,7 +59,7 @@ fn light_output_ratio(photometry: &Photometry) -> Option<Finding> {
         "a luminaire gives no more than its lamps: the rated flux is {:.1} % too high, or the lamps' too low",
         100.0 * (lor - 1.0)
     );
-    Some(Finding::new("lor-above-one", None, message, consequence))
+    Some(Finding::new("lor-above-one", photometry.places.output_ratio, message, consequence))
 }
 
 /// Towards the horizon only the luminous sides are seen: where they differ between the two axes, so
@@ -88,7 +90,8 @@ fn swapped_planes(photometry: &Photometry) -> Option<Finding> {
          the planes turned by 90°, and UGR changes with it",
         (along_cd / along_m2) / (across_cd / along_m2).max(1e-12)
     );
-    (seen && contradicts).then(|| Finding::new("swapped-planes", None, message, consequence))
+    (seen && contradicts)
+        .then(|| Finding::new("swapped-planes", photometry.places.opening, message, consequence))
 }
 
 /// Leaving out every second γ shows how much the table's step matters: the error of linear
@@ -115,7 +118,8 @@ fn coarse(photometry: &Photometry) -> Option<Finding> {
         "the flux is uncertain by about {:.1} % from interpolation alone, the illuminance in the beam by more",
         left.abs()
     );
-    (left.abs() > 1.0).then(|| Finding::new("coarse-angles", None, message, consequence))
+    let line = photometry.places.gammas.map(|[first, _]| first);
+    (left.abs() > 1.0).then(|| Finding::new("coarse-angles", line, message, consequence))
 }
 
 fn luminance(photometry: &Photometry) -> Option<Finding> {
@@ -126,7 +130,7 @@ fn luminance(photometry: &Photometry) -> Option<Finding> {
     let consequence =
         format!("a luminance of {nits:.1e} cd/m²: UGR is far too high; are the sizes in the right unit?");
     (area_m2 > 0.0 && nits > LUMINANCE_MAX)
-        .then(|| Finding::new("implausible-luminance", None, message, consequence))
+        .then(|| Finding::new("implausible-luminance", photometry.places.opening, message, consequence))
 }
 
 /// CR LF belongs to DOS and to LM-63's own text; it is reported because some readers keep the CR.
@@ -140,14 +144,16 @@ fn line_ends(bytes: &[u8], format: Format) -> Option<Finding> {
         let message = format!("{pairs} lines end in CR LF, {} in LF alone", feeds - pairs);
         let consequence =
             "read alike here; the file was edited or joined by hand, so look at its values twice";
-        return Some(Finding::new("mixed-line-ends", None, message, consequence));
+        let lines = bytes.split_inclusive(|byte| *byte == b'\n');
+        let odd = lines.take_while(|line| line.ends_with(b"\r\n")).count() + 1;
+        return Some(Finding::new("mixed-line-ends", odd, message, consequence));
     }
-    let usual = match format {
-        Format::Lm63 { .. } => ", as LM-63 asks for",
-        Format::Eulumdat | Format::Tm33 => "",
+    let message = match format {
+        Format::Lm63 { .. } => "lines end in CR LF, as LM-63 asks for",
+        Format::Eulumdat | Format::Tm33 => "lines end in CR LF",
     };
     let consequence = "no effect here; readers that keep the CR may misread the last number of a line";
-    Some(Finding::new("crlf", None, format!("lines end in CR LF{usual}"), consequence))
+    Some(Finding::new("crlf", 1, message, consequence))
 }
 
 fn encoding(bytes: &[u8]) -> Option<Finding> {

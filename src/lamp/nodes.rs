@@ -28,7 +28,8 @@ pub(super) fn check(photometry: &Photometry) -> Vec<Finding> {
             let (low, high) = neighbours
                 .iter()
                 .fold((f64::INFINITY, 0.0_f64), |(low, high), cd| (low.min(*cd), high.max(*cd)));
-            let place = Place { azimuth_deg, gamma_deg, cd: cd(j, i), usual_cd: 0.5 * (low + high) };
+            let line = photometry.places.intensity(azimuth_deg, i);
+            let place = Place { azimuth_deg, gamma_deg, cd: cd(j, i), usual_cd: 0.5 * (low + high), line };
             // The step to the darkness behind a cut-off is no gap, a lone ray in it is a spike.
             if place.cd > SPIKE * high && place.cd > DIM * peak_cd {
                 spikes.push(place);
@@ -46,6 +47,7 @@ struct Place {
     gamma_deg: f64,
     cd: f64,
     usual_cd: f64,
+    line: Option<usize>,
 }
 
 fn finding(photometry: &Photometry, code: &'static str, places: &[Place], verb: &str) -> Option<Finding> {
@@ -67,5 +69,5 @@ fn finding(photometry: &Photometry, code: &'static str, places: &[Place], verb: 
          so is the luminance seen from there",
         worst.cd / worst.usual_cd.max(1e-9 * worst.cd).max(f64::MIN_POSITIVE)
     );
-    Some(Finding::new(code, None, message, consequence))
+    Some(Finding::new(code, worst.line, message, consequence))
 }

@@ -4,6 +4,7 @@
 
 use super::{Answers, Gauged};
 use crate::estimate::{Estimate, Pair};
+use crate::norm::Light;
 use crate::outcome::PointValue;
 use crate::plan::{PlannedQuantity, Rows};
 use crate::quantity::Statistic;
@@ -21,14 +22,14 @@ pub struct Blocks {
 
 /// Block values of a planned quantity. A ratio is linearised about its estimate, so that means and
 /// errors are those of the ratio to first order.
-pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64]) -> Blocks {
+pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64], light: Light) -> Blocks {
     let mut blocks = Blocks { index: Vec::new(), values: Vec::new() };
     for (index, rows) in entry.rows.iter().enumerate() {
         let values = match *rows {
             None => continue,
-            Some(Rows::One(row)) => answers.total(row, weights),
+            Some(Rows::One(row)) => answers.counted(row, weights, light),
             Some(Rows::Ratio(above, below)) => {
-                let (x, y) = (answers.total(above, weights), answers.total(below, weights));
+                let (x, y) = (answers.counted(above, weights, light), answers.counted(below, weights, light));
                 let pair = Pair::from_blocks(&x, &y);
                 if pair.y > 0.0 {
                     let ratio = pair.x / pair.y;
@@ -49,9 +50,10 @@ pub fn points(
     answers: &Answers,
     entry: &PlannedQuantity,
     weights: &[f64],
+    light: Light,
     alpha: f64,
 ) -> Vec<Option<PointValue>> {
-    let blocks = blocks(answers, entry, weights);
+    let blocks = blocks(answers, entry, weights, light);
     let mut points = vec![None; entry.rows.len()];
     for (index, values) in blocks.index.iter().zip(&blocks.values) {
         let estimate = Estimate::from_blocks(values);
@@ -111,7 +113,8 @@ pub fn gauge_of_task(own: &Blocks, task: &Blocks, alpha: f64) -> Gauged {
     Gauged { value: Ok(ratio.value), se: ratio.se, lo, hi, place: None }
 }
 
-fn mean_blocks(blocks: &Blocks) -> Vec<f64> {
+/// Block values of the mean over the points.
+pub fn mean_blocks(blocks: &Blocks) -> Vec<f64> {
     let count = blocks.values[0].len();
     (0..count)
         .map(|k| blocks.values.iter().map(|point| point[k]).sum::<f64>() / blocks.values.len() as f64)

@@ -27,6 +27,18 @@ pub enum State {
     Maintained,
     /// New: no maintenance factor.
     Initial,
+    /// In an emergency: the output that the luminaires have left then, maintenance factor applied.
+    Emergency,
+}
+
+/// Which light counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Light {
+    /// All that arrives.
+    All,
+    /// Straight from luminaires, panes on the way included; no reflection.
+    Direct,
 }
 
 /// How a room's UGR is found.
@@ -99,6 +111,8 @@ pub enum Comparison {
 pub struct Application {
     /// State in which illuminances are judged.
     pub illuminance_state: Fact<State>,
+    /// Which light counts for illuminances.
+    pub light: Fact<Light>,
     /// State in which glare is judged.
     pub ugr_state: Fact<State>,
     /// Which UGR is judged.
@@ -192,6 +206,7 @@ impl Default for Application {
         }
         Self {
             illuminance_state: customary(State::Maintained),
+            light: customary(Light::All),
             ugr_state: customary(State::Initial),
             ugr_method: customary(UgrMethod::Table),
             ugr_shr: customary(0.25),

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::application::{Application, Comparison, Fact, GridChoice, LevelOf, State, UgrMethod};
+use super::application::{Application, Comparison, Fact, GridChoice, LevelOf, Light, State, UgrMethod};
 use super::{Bound, Plane, Posture, Row, Standard, Zone};
 use crate::quantity::Quantity;
 
@@ -69,6 +69,19 @@ pub fn explain_row(standard: &Standard, row: &Row) -> String {
     if let Some((lx, verified)) = row.modified_lx {
         line(&mut text, &format!("modified illuminance {lx} lx, {}: where a room says why", verified.key()));
     }
+    if let Some(intensity) = &row.intensity {
+        let steps = intensity.by_height_cd.iter();
+        let steps: Vec<String> = steps.map(|[from_m, cd]| format!("from {from_m} m: {cd}")).collect();
+        let zone = format!("{}° to {}°", intensity.from_deg, intensity.to_deg);
+        let standing = intensity.verified.key();
+        line(
+            &mut text,
+            &format!("intensity {zone} from straight down, cd: {} ({standing})", steps.join(", ")),
+        );
+    }
+    for reason in &row.not_judged {
+        line(&mut text, &format!("not assessed: {reason}"));
+    }
     for unknown in &row.unknown {
         let quantity = format!("{} {}", unknown.quantity.key(), unknown.statistic.key());
         line(&mut text, &format!("{:<12} {quantity:<16} not in this file: not assessed", unknown.zone.key()));
@@ -126,8 +139,14 @@ fn application(text: &mut String, rules: &Application) {
     let state = |state: State| match state {
         State::Maintained => "maintained",
         State::Initial => "initial",
+        State::Emergency => "at emergency output, maintained",
     };
     fact(text, "illuminance is judged", state(rules.illuminance_state.value), &rules.illuminance_state);
+    let light = match rules.light.value {
+        Light::All => "all light",
+        Light::Direct => "direct light only, no reflection",
+    };
+    fact(text, "illuminance counts", light, &rules.light);
     let level = match rules.illuminance_statistic.value {
         LevelOf::Mean => "the mean over the area",
         LevelOf::Min => "the smallest value of the area",

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Application, Bound, LevelOf, Plane, Posture, Verified, Zone};
+use super::{Application, Bound, IntensityLimit, LevelOf, Plane, Posture, Verified, Zone};
 use crate::quantity::{Property, Quantity, Statistic, Unmeasured};
 
 /// The file.
@@ -60,6 +60,11 @@ pub(super) struct RowText {
     /// Limits that no column expresses.
     #[serde(default)]
     pub(super) limit: Vec<LimitText>,
+    /// Largest luminous intensities.
+    pub(super) intensity: Option<Spanned<IntensityLimit>>,
+    /// What the norm asks beyond these limits and nothing computes.
+    #[serde(default)]
+    pub(super) not_judged: Vec<String>,
     /// Columns that the norm itself leaves open for this row.
     #[serde(default)]
     pub(super) unregulated: Vec<Spanned<String>>,

@@ -26,7 +26,7 @@ fn flux(photometry: &Photometry) -> Option<Finding> {
         if deviation < 0.0 { "lower" } else { "higher" }
     );
     let code = if odd > 0.10 { "flux-contradiction" } else { "flux-mismatch" };
-    (odd > 0.02).then(|| Finding::new(code, None, message, consequence))
+    (odd > 0.02).then(|| Finding::new(code, photometry.places.flux, message, consequence))
 }
 
 fn luminous_area(photometry: &Photometry) -> Option<Finding> {
@@ -34,18 +34,24 @@ fn luminous_area(photometry: &Photometry) -> Option<Finding> {
     let none = !(photometry.opening.projected_area_m2(oblique) > 0.0);
     let consequence =
         "the luminaire counts as a point: its luminance, UGR and glare are undefined; set `area`";
-    none.then(|| Finding::new("zero-area", None, "no luminous area", consequence))
+    none.then(|| Finding::new("zero-area", photometry.places.opening, "no luminous area", consequence))
 }
 
 fn nadir(photometry: &Photometry) -> Option<Finding> {
     let (azimuths, gammas) = photometry.distribution.grid()?;
     let first = *gammas.first().filter(|gamma| **gamma <= 0.0)?;
-    let at_nadir = azimuths.iter().map(|azimuth| photometry.distribution.intensity_at(*azimuth, first));
-    let (low, high) = at_nadir.fold((f64::INFINITY, 0.0_f64), |(low, high), cd| (low.min(cd), high.max(cd)));
+    let at_nadir = |azimuth: f64| photometry.distribution.intensity_at(azimuth, first);
+    let cds = || azimuths.iter().map(|azimuth| at_nadir(*azimuth));
+    let (low, high) = cds().fold((f64::INFINITY, 0.0_f64), |(low, high), cd| (low.min(cd), high.max(cd)));
+    // The plane that stands apart from all others.
+    let mean = cds().sum::<f64>() / azimuths.len() as f64;
+    let apart = |azimuth: &&f64| (at_nadir(**azimuth) - mean).abs();
+    let odd = azimuths.iter().rev().max_by(|a, b| apart(a).total_cmp(&apart(b)))?;
     let message = format!("γ = 0 is one direction, but its planes say {low:.1} to {high:.1} cd");
     let consequence =
         format!("the illuminance right below is uncertain by {:.1} %", 100.0 * (high - low) / high);
-    (high - low > 0.01 * high).then(|| Finding::new("unequal-nadir", None, message, consequence))
+    (high - low > 0.01 * high)
+        .then(|| Finding::new("unequal-nadir", photometry.places.intensity(*odd, 0), message, consequence))
 }
 
 fn covered_range(photometry: &Photometry) -> Option<Finding> {
@@ -65,7 +71,8 @@ fn covered_range(photometry: &Photometry) -> Option<Finding> {
             "the cone below is taken as dark: up to about {:.1} % of the flux is missing, right under the luminaire",
             lost(first, 0.0, first)
         );
-        return Some(Finding::new("missing-nadir", None, format!("γ starts at {first}°"), consequence));
+        let line = photometry.places.gammas.map(|[first, _]| first);
+        return Some(Finding::new("missing-nadir", line, format!("γ starts at {first}°"), consequence));
     }
     let ends_odd = (last - 90.0).abs() > 1e-6 && (last - 180.0).abs() > 1e-6;
     let end = if last < 90.0 { 90.0 } else { 180.0 };
@@ -73,7 +80,8 @@ fn covered_range(photometry: &Photometry) -> Option<Finding> {
         "directions beyond are taken as dark: up to about {:.1} % of the flux is missing",
         lost(last, last, end)
     );
-    ends_odd.then(|| Finding::new("missing-range", None, format!("γ ends at {last}°"), consequence))
+    let line = photometry.places.gammas.map(|[_, last]| last);
+    ends_odd.then(|| Finding::new("missing-range", line, format!("γ ends at {last}°"), consequence))
 }
 
 fn is_flat_area(opening: Opening) -> bool {
@@ -82,9 +90,11 @@ fn is_flat_area(opening: Opening) -> bool {
 
 fn horizon(photometry: &Photometry) -> Option<Finding> {
     let distribution = &photometry.distribution;
-    let (azimuths, _) = distribution.grid()?;
-    let at_horizon =
-        azimuths.iter().map(|azimuth| distribution.intensity_at(*azimuth, 90.0)).fold(0.0, f64::max);
+    let (azimuths, gammas) = distribution.grid()?;
+    let at = |azimuth: f64| distribution.intensity_at(azimuth, 90.0);
+    let brightest = *azimuths.iter().rev().max_by(|a, b| at(**a).total_cmp(&at(**b)))?;
+    let at_horizon = at(brightest);
+    let from_horizon = gammas.partition_point(|gamma| *gamma < 90.0 - 1e-6);
     let share = at_horizon / distribution.max_intensity().0;
     let message = format!(
         "{:.1} % of the largest intensity ({at_horizon:.1} cd) leaves a flat opening edge-on at γ = 90°",
@@ -95,8 +105,10 @@ fn horizon(photometry: &Photometry) -> Option<Finding> {
         "its projected area is 0 there: luminance and UGR near the horizon are overstated, by some {nits:.0} cd/m² at \
          85°; luminous sides seem to be missing"
     );
-    (is_flat_area(photometry.opening) && share > 0.005)
-        .then(|| Finding::new("horizon-light", None, message, consequence))
+    (is_flat_area(photometry.opening) && share > 0.005).then(|| {
+        let line = photometry.places.intensity(brightest, from_horizon);
+        Finding::new("horizon-light", line, message, consequence)
+    })
 }
 
 fn uplight(photometry: &Photometry) -> Option<Finding> {
@@ -117,12 +129,23 @@ fn uplight(photometry: &Photometry) -> Option<Finding> {
             .to_owned()
     };
     (is_flat_area(photometry.opening) && share > 0.005)
-        .then(|| Finding::new("flat-uplight", None, message, consequence))
+        .then(|| Finding::new("flat-uplight", brightest_above(photometry), message, consequence))
+}
+
+/// The line of the largest intensity above the horizon.
+fn brightest_above(photometry: &Photometry) -> Option<usize> {
+    let (azimuths, gammas) = photometry.distribution.grid()?;
+    let above = gammas.iter().enumerate().filter(|(_, gamma)| **gamma > 90.0);
+    let nodes = above.flat_map(|(i, gamma)| azimuths.iter().map(move |azimuth| (*azimuth, i, *gamma)));
+    let cds = nodes.map(|(azimuth, i, gamma)| {
+        (photometry.distribution.intensity_at(azimuth, gamma), photometry.places.intensity(azimuth, i))
+    });
+    cds.reduce(|best, next| if next.0 > best.0 { next } else { best })?.1
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{IntensityDistribution, Lm63Version};
+    use super::super::{IntensityDistribution, Lm63Version, Places};
     use super::*;
 
     fn photometry(plane_0: [f64; 4], plane_180: [f64; 4], gammas: [f64; 4]) -> Photometry {
@@ -138,6 +161,7 @@ mod tests {
             lor: None,
             power_w: None,
             colour_rendering: None,
+            places: Places::default(),
             findings: Vec::new(),
         }
     }

@@ -7,7 +7,7 @@ use super::ies_head::Head;
 use super::ies_opening::opening;
 use super::numbers::{Comma, DAMAGED, Numbers, check_gamma_range, count, positive, shortened};
 use super::planes::{Plane, close_circle, mirrored, spread};
-use super::{Fault, Finding, Format, Photometry};
+use super::{Fault, Finding, Format, Photometry, Places};
 
 /// Editions of LM-63.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -57,16 +57,23 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     let data_line = numbers.line;
     let mut planes = Vec::new();
     for angle in &angles {
-        let cd = numbers.plane(&format!("{}°", angle.value), &gammas, factor)?;
-        planes.push(Plane { angle_deg: angle.value, cd });
+        planes.push(numbers.plane(&format!("{}°", angle.value), angle.value, &gammas, factor)?);
     }
     if let Some((line, token)) = numbers.rest() {
         let message = format!("text after the last intensity, from '{}'", shortened(token));
         let consequence = "ignored; if angles were left out of the head, every intensity may be shifted";
         findings.push(Finding::new("trailing-data", line, message, consequence));
     }
+    let mut places = Places {
+        flux: Some(head.lumens_line),
+        power: Some(head.power_line),
+        opening: Some(head.size_line),
+        gammas: Some([gammas[0].line, gammas[n_gamma - 1].line]),
+        ..Places::default()
+    };
     let distribution = if head.goniometer == Goniometer::C {
         let planes = expanded(planes, angles[0].line, &mut findings)?;
+        places = places.with_planes(&planes, 0.0);
         let gammas = gammas.iter().map(|gamma| gamma.value).collect();
         close_circle(planes, gammas, 0.0)
             .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?
@@ -87,6 +94,7 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         lor: None,
         power_w: Some(head.power_w).filter(|watts| *watts > 0.0),
         colour_rendering: None,
+        places,
         findings,
     })
 }

@@ -58,6 +58,10 @@ struct Measured<'a> {
 impl Measured<'_> {
     /// Bilinear in the goniometer's own angles; 0 cd outside the measured range.
     fn cd(&self, direction: DVec3) -> f64 {
+        // Type B ends at the horizon: its planes are half as wide as those of A and C.
+        if self.goniometer == Goniometer::B && direction.z > 0.0 {
+            return 0.0;
+        }
         let (mut h, mut v) = self.goniometer.angles_deg(direction);
         if self.vertical_deg[0] >= 0.0 {
             v = v.abs();
@@ -231,6 +235,16 @@ mod tests {
         let found = lamp.distribution.flux().0;
         // 5° steps of the file itself cost about 0.5 %.
         assert!((found / flux - 1.0).abs() < 0.01, "{found} lm, expected {flux}");
+    }
+
+    /// Catches: a single plane of type B carried on above the horizon: half of the flux would be missing.
+    #[test]
+    fn type_b_never_looks_up() {
+        let text = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 2 2 0.1 0.1 0\n1 1 50\n-90 0 90\n0\n0 500 0\n";
+        let lamp = parse(text.as_bytes(), "x.ies").expect("sound");
+        let told = lamp.findings.iter().find(|finding| finding.code == "resampled").expect("told");
+        assert!(told.consequence.contains("the flux within 0."), "{told:?}");
+        assert!(lamp.distribution.intensity_along(DVec3::new(0.0, 0.6, 0.8)) < 1e-9);
     }
 
     /// Catches: files that start at 0° read as a quarter of the beam.

@@ -11,7 +11,7 @@ const FOOT_M: f64 = 0.3048;
 pub(super) struct Head {
     lamps: f64,
     lumens: f64,
-    lumens_line: usize,
+    pub(super) lumens_line: usize,
     multiplier: f64,
     n_gamma: Number,
     n_plane: Number,
@@ -24,6 +24,7 @@ pub(super) struct Head {
     ballast: f64,
     ballast_lamp: Number,
     pub(super) power_w: f64,
+    pub(super) power_line: usize,
 }
 
 impl Head {
@@ -41,7 +42,7 @@ impl Head {
         let height = numbers.next("the luminous height")?.value;
         let ballast = positive(numbers.next("the ballast factor")?, "the ballast factor")?;
         let ballast_lamp = numbers.next("the ballast-lamp factor")?;
-        let power_w = numbers.next("the input watts")?.value;
+        let power = numbers.next("the input watts")?;
         Ok(Self {
             lamps,
             lumens: lumens.value,
@@ -57,7 +58,8 @@ impl Head {
             size_line: width.line,
             ballast,
             ballast_lamp,
-            power_w,
+            power_w: power.value,
+            power_line: power.line,
         })
     }
 

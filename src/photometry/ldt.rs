@@ -7,7 +7,7 @@ use super::numbers::{
     Comma, DAMAGED, MAX_VALUES, Number, Numbers, check_gamma_range, count, parse, shortened,
 };
 use super::planes::{Plane, close_circle, mirrored, spread};
-use super::{Fault, Finding, Format, Photometry};
+use super::{Fault, Finding, Format, Photometry, Places};
 
 /// Azimuth of the luminaire frame minus C.
 const TURN_DEG: f64 = -90.0;
@@ -53,6 +53,15 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         head.findings.push(Finding::new("trailing-data", line, message, consequence));
     }
     head.check_light_source_type(&planes);
+    let places = Places {
+        flux: Some(29),
+        output_ratio: Some(23),
+        power: Some(32),
+        opening: Some(16),
+        gammas: Some([gammas[0].line, gammas[n_gamma - 1].line]),
+        ..Places::default()
+    }
+    .with_planes(&planes, TURN_DEG);
     let gammas = gammas.iter().map(|gamma| gamma.value).collect();
     let distribution = close_circle(planes, gammas, TURN_DEG)
         .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?;
@@ -68,6 +77,7 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         lor,
         power_w: lamps.power_w,
         colour_rendering: lamps.colour_rendering,
+        places,
         findings: head.findings,
     })
 }
@@ -150,8 +160,7 @@ fn read_planes(
     let first_line = numbers.line + 1;
     let mut planes = Vec::new();
     for angle_deg in stored {
-        let cd = numbers.plane(&format!("C{angle_deg}"), gammas, factor)?;
-        planes.push(Plane { angle_deg, cd });
+        planes.push(numbers.plane(&format!("C{angle_deg}"), angle_deg, gammas, factor)?);
     }
     if !complete {
         return Ok(symmetry.expand(planes));
@@ -179,7 +188,7 @@ fn symmetry_error(symmetry: Symmetry, planes: &[Plane], gammas: &[Number]) -> f6
     };
     let mut widest = 0.0_f64;
     for plane in planes {
-        let bare = Plane { angle_deg: plane.angle_deg, cd: Vec::new() };
+        let bare = Plane { angle_deg: plane.angle_deg, cd: Vec::new(), lines: [].into() };
         for image in symmetry.expand(vec![bare]) {
             for (gamma, cd) in gammas_deg.iter().zip(&plane.cd) {
                 let mirrored_cd = distribution.intensity_at(image.angle_deg, *gamma);

@@ -22,6 +22,7 @@ mod ldt_head;
 mod ldt_write;
 mod numbers;
 mod opening;
+mod places;
 mod planes;
 mod symmetry;
 mod table;
@@ -35,6 +36,7 @@ pub use ies::Lm63Version;
 pub use ies_write::to_ies;
 pub use ldt_write::to_ldt;
 pub use opening::{Met, Opening, Shine};
+pub use places::Places;
 pub use symmetry::Symmetry;
 
 /// What a photometric file says, checked.
@@ -58,6 +60,8 @@ pub struct Photometry {
     pub power_w: Option<f64>,
     /// Colour rendering index R_a, or the lower end of its stated group.
     pub colour_rendering: Option<f64>,
+    /// Where the file says it.
+    pub places: Places,
     /// Oddities that do not prevent a calculation.
     pub findings: Vec<Finding>,
 }

@@ -4,6 +4,7 @@
 use std::fmt::Display;
 
 use super::Fault;
+use super::planes::Plane;
 
 /// More angles or intensities than any measurement has.
 pub(super) const MAX_VALUES: usize = 4_000_000;
@@ -83,8 +84,15 @@ impl<'a> Numbers<'a> {
     }
 
     /// The intensities of one plane times `factor`.
-    pub(super) fn plane(&mut self, name: &str, gammas: &[Number], factor: f64) -> Result<Vec<f64>, Fault> {
-        let mut plane = Vec::with_capacity(gammas.len());
+    pub(super) fn plane(
+        &mut self,
+        name: &str,
+        angle_deg: f64,
+        gammas: &[Number],
+        factor: f64,
+    ) -> Result<Plane, Fault> {
+        let mut cd = Vec::with_capacity(gammas.len());
+        let mut lines = Vec::with_capacity(gammas.len());
         for gamma in gammas {
             let intensity = self.next(format_args!("the intensity at {name}, γ {}°", gamma.value))?;
             if intensity.value < 0.0 {
@@ -92,9 +100,10 @@ impl<'a> Numbers<'a> {
                     format!("the intensity at {name}, γ {}° is negative: {}", gamma.value, intensity.value);
                 return Err(Fault::new(intensity.line, message, DAMAGED).coded("negative-intensity"));
             }
-            plane.push(intensity.value * factor);
+            cd.push(intensity.value * factor);
+            lines.push(intensity.line);
         }
-        Ok(plane)
+        Ok(Plane { angle_deg, cd, lines: lines.into() })
     }
 }
 

@@ -1,6 +1,8 @@
 //! Measured half-planes → the full circle. Mirroring happens in the file's own angle; only the
 //! last step turns it into the azimuth of the luminaire frame.
 
+use std::sync::Arc;
+
 use super::{DistributionError, IntensityDistribution};
 
 /// Angles closer than this are the same plane, degrees.
@@ -11,11 +13,13 @@ const SAME_DEG: f64 = 1e-6;
 pub(super) struct Plane {
     pub(super) angle_deg: f64,
     pub(super) cd: Vec<f64>,
+    /// Where they stand in the file.
+    pub(super) lines: Arc<[usize]>,
 }
 
 /// The planes and their mirror images: I(C) = I(2 axis − C).
 pub(super) fn mirrored(planes: Vec<Plane>, axis_deg: f64) -> Vec<Plane> {
-    let image = |plane: &Plane| Plane { angle_deg: 2.0 * axis_deg - plane.angle_deg, cd: plane.cd.clone() };
+    let image = |plane: &Plane| Plane { angle_deg: 2.0 * axis_deg - plane.angle_deg, ..plane.clone() };
     let images: Vec<Plane> = planes.iter().map(image).collect();
     planes.into_iter().chain(images).collect()
 }
@@ -50,9 +54,9 @@ pub(super) fn close_circle(
         planes.clear();
     }
     if planes.first().is_none_or(|plane| plane.angle_deg > 0.0) {
-        planes.insert(0, Plane { angle_deg: 0.0, cd: at_zero.clone() });
+        planes.insert(0, Plane { angle_deg: 0.0, cd: at_zero.clone(), lines: [].into() });
     }
-    planes.push(Plane { angle_deg: 360.0, cd: at_zero });
+    planes.push(Plane { angle_deg: 360.0, cd: at_zero, lines: [].into() });
     let (azimuths, cd) = planes.into_iter().map(|plane| (plane.angle_deg, plane.cd)).unzip();
     IntensityDistribution::from_grid(azimuths, gammas_deg, cd)
 }
@@ -79,7 +83,7 @@ mod tests {
     use super::*;
 
     fn plane(angle_deg: f64, cd: f64) -> Plane {
-        Plane { angle_deg, cd: vec![cd, cd] }
+        Plane { angle_deg, cd: vec![cd, cd], lines: [].into() }
     }
 
     /// Catches: a turn in the wrong direction, a seam left open, a changed interpolant at 0°.

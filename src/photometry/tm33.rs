@@ -6,7 +6,7 @@ use roxmltree::{Document, Node};
 
 use super::numbers::{MAX_VALUES, shortened};
 use super::planes::{Plane, close_circle, mirrored};
-use super::{Fault, Finding, Format, Opening, Photometry};
+use super::{Fault, Finding, Format, Opening, Photometry, Places};
 
 const DAMAGED: &str = "the file is damaged: get it from its manufacturer again";
 /// Angles closer than this are one, degrees.
@@ -38,6 +38,8 @@ pub(super) fn read(text: &str) -> Result<Photometry, Fault> {
         .into_iter()
         .map(|plane| Plane { cd: plane.cd.into_iter().map(|cd| cd * factor).collect(), ..plane });
     let planes = expanded(planes.collect(), stated(data, "Symm").or(stated(data, "SymmType")), line(data))?;
+    let first_line = line(data);
+    let places = Places { gammas: Some([first_line; 2]), ..Places::default() }.with_planes(&planes, 0.0);
     let distribution = close_circle(planes, gammas_deg, 0.0)
         .map_err(|error| Fault::new(line(data), error.to_string(), DAMAGED))?;
     let quantity = number(emitter, "Quantity")?.filter(|n| *n > 0.0).unwrap_or(1.0);
@@ -54,6 +56,7 @@ pub(super) fn read(text: &str) -> Result<Photometry, Fault> {
         power_w: watts.filter(|watts| *watts > 0.0),
         colour_rendering: ra.filter(|ra| (0.0..=100.0).contains(ra)),
         distribution,
+        places,
         findings,
     })
 }
@@ -153,11 +156,11 @@ fn table(data: Node, findings: &mut Vec<Finding>) -> Result<(Vec<f64>, Vec<Plane
     }
     let mut cd = vec![None; cells];
     let mut doubled = 0;
-    for (horizontal, vertical, value, _) in &values {
+    for (horizontal, vertical, value, line) in &values {
         let at = |axis: &[f64], angle: f64| axis.partition_point(|known| *known < angle - SAME_DEG);
         let cell = &mut cd[at(&horizontals, *horizontal) * verticals.len() + at(&verticals, *vertical)];
         doubled += usize::from(cell.is_some());
-        cell.get_or_insert(*value);
+        cell.get_or_insert((*value, *line));
     }
     if doubled > 0 {
         let message = format!("{doubled} directions are given twice");
@@ -180,7 +183,8 @@ fn table(data: Node, findings: &mut Vec<Finding>) -> Result<(Vec<f64>, Vec<Plane
             let message = format!("no intensity at h {row}°, v {}°", verticals[missing]);
             return Err(Fault::new(line(data), message, DAMAGED));
         }
-        planes.push(Plane { angle_deg: *row, cd: plane.iter().copied().flatten().collect() });
+        let (cd, lines): (_, Vec<usize>) = plane.iter().copied().flatten().unzip();
+        planes.push(Plane { angle_deg: *row, cd, lines: lines.into() });
     }
     Ok((verticals, planes))
 }

@@ -1,11 +1,12 @@
-//! Areas → grids → receivers: the user's areas, and those a norm implies for a room without any.
+//! Areas → grids → receivers.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
+use super::hidden::exclude;
+use super::norm_areas::norm_areas;
 use super::{Plan, PlanError, PlannedArea, PlannedQuantity, Rows};
-use crate::geometry::trace::Hit;
 use crate::grid::{self, Exclusion, Grid, GridRule};
-use crate::norm::{GridChoice, Plane, Zone};
+use crate::norm::GridChoice;
 use crate::project::{AreaKind, AreaShape, AreaSpec, CustomSubject, Project, Room, World};
 use crate::quantity::Quantity;
 use crate::query::{Kernel, Ray, Receiver};
@@ -13,9 +14,7 @@ use crate::scene::Scene;
 use crate::sphere;
 
 /// How far from a room's nominal wall or ceiling its real surface is looked for, m.
-const SNAP_M: f64 = 0.25;
-/// Surfaces closer than this share a plane, m.
-const TOUCHING_M: f64 = 1e-6;
+pub(super) const SNAP_M: f64 = 0.25;
 
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     let mut specs: Vec<AreaSpec> = world.areas.clone();
@@ -67,7 +66,9 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
             kind: spec.kind,
             of: spec.of.map(|of| specs[of].name.clone()),
             row: row_of(project, world, spec),
+            modified: spec.modified.clone().or_else(|| spec.of.and_then(|of| specs[of].modified.clone())),
             light_scene: spec.light_scene.unwrap_or(0),
+            shape: spec.shape.clone(),
             grid,
             quantities,
         };
@@ -80,101 +81,6 @@ fn row_of(project: &Project, world: &World, spec: &AreaSpec) -> Option<String> {
     let task = spec.of.and_then(|of| world.areas[of].row.clone());
     let norm = project.norm.as_ref()?;
     spec.row.clone().or(task).or_else(|| world.rooms[spec.room].row.clone()).or_else(|| norm.row.clone())
-}
-
-/// Areas for a room that lists none: the whole working plane, a volume at eye height, walls, ceiling.
-fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: usize) -> Vec<AreaSpec> {
-    let Some(norm) = &project.norm else { return Vec::new() };
-    let Some(reference) = room.row.as_ref().or(norm.row.as_ref()) else { return Vec::new() };
-    let Some(row) = norm.standard.row(reference) else { return Vec::new() };
-    let standard = &norm.standard;
-    let application = &standard.application;
-    let plane_m = row.plane_m.unwrap_or(application.working_plane_m.value);
-    let flat = |height_m: f64| -> Vec<DVec3> {
-        room.footprint.iter().map(|p| DVec3::new(p.x, p.y, room.floor_m + height_m)).collect()
-    };
-    let spec = |name: &str, kind, shape, border_m| AreaSpec {
-        name: format!("{} · {name}", room.name),
-        kind,
-        of: None,
-        room: index,
-        row: None,
-        light_scene: None,
-        shape,
-        rule: GridRule::En,
-        border_m,
-        quantities: Vec::new(),
-        written: None,
-    };
-    let narrow = narrowest(&room.footprint);
-    let border_m = if narrow > 3.0 * application.border_m.value { application.border_m.value } else { 0.0 };
-    let mut areas = Vec::new();
-    // A vertical plane lies where the board or the rack is: nobody can make it from the outline.
-    if row.plane == Plane::Horizontal {
-        let plane = AreaShape::Polygon(flat(plane_m));
-        areas.push(spec("working plane", AreaKind::Task, plane, border_m));
-    }
-    if standard.regulates(Zone::Cylindrical) {
-        let heights = application.eye_heights_m(row.posture);
-        for height_m in &heights {
-            let name = if heights.len() > 1 { format!("volume {height_m} m") } else { "volume".to_owned() };
-            areas.push(spec(&name, AreaKind::Volume, AreaShape::Polygon(flat(*height_m)), border_m));
-        }
-    }
-    if standard.regulates(Zone::Ceiling) {
-        let ceiling = AreaShape::Polygon(flat(room.height_m).into_iter().rev().collect());
-        areas.push(spec("ceiling", AreaKind::Surface, ceiling, 0.0));
-    }
-    if !standard.regulates(Zone::Walls) {
-        return areas;
-    }
-    let count = room.footprint.len();
-    let names = wall_names(scene, room);
-    for (number, &a) in room.footprint.iter().enumerate() {
-        let b = room.footprint[(number + 1) % count];
-        let origin = DVec3::new(b.x, b.y, room.floor_m);
-        let shape = AreaShape::Rect { origin, u: (a - b).extend(0.0), v: DVec3::Z * room.height_m };
-        areas.push(spec(&names[number], AreaKind::Surface, shape, 0.0));
-    }
-    areas
-}
-
-/// Names of the walls in the order of the footprint: those of the surfaces that stand there, since
-/// materials and areas call them so; numbers where a surface is several walls, as CAD files have it.
-fn wall_names(scene: &Scene, room: &Room) -> Vec<String> {
-    let count = room.footprint.len();
-    let mesh = &scene.mesh;
-    let found: Vec<Option<&str>> = (0..count)
-        .map(|number| {
-            let (a, b) = (room.footprint[number], room.footprint[(number + 1) % count]);
-            let along = (b - a).normalize_or_zero();
-            let stands_there = |&wall: &u32| {
-                let mut own = (0..mesh.triangles.len()).filter(|&t| mesh.triangles[t].surface == wall);
-                own.any(|triangle| {
-                    mesh.corners(triangle).iter().all(|corner| {
-                        let p = DVec2::new(corner.x, corner.y) - a;
-                        let t = p.dot(along);
-                        p.perp_dot(along).abs() < 0.01 && t > -0.01 && t < (b - a).length() + 0.01
-                    })
-                })
-            };
-            let wall = room.walls.iter().copied().find(stands_there)?;
-            Some(mesh.surfaces[wall as usize].name.as_str())
-        })
-        .collect();
-    let unique = |name: &str| found.iter().filter(|other| **other == Some(name)).count() == 1;
-    if let Some(names) = found.iter().copied().collect::<Option<Vec<&str>>>()
-        && names.iter().all(|name| unique(name))
-    {
-        return names.into_iter().map(str::to_owned).collect();
-    }
-    (1..=count).map(|number| format!("wall {number}")).collect()
-}
-
-fn narrowest(footprint: &[DVec2]) -> f64 {
-    let (lo, hi) =
-        footprint.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
-    (hi - lo).min_element()
 }
 
 fn lay(spec: &AreaSpec, room: &Room, scene: &Scene) -> Result<Grid, grid::GridError> {
@@ -250,7 +156,7 @@ fn snapped(mut grid: Grid, scene: &Scene) -> Grid {
 }
 
 /// Whether a point of a planar surface's bounding rectangle lies on the surface itself.
-fn on_surface(scene: &Scene, surface: u32, at: DVec3) -> bool {
+pub(super) fn on_surface(scene: &Scene, surface: u32, at: DVec3) -> bool {
     let mesh = &scene.mesh;
     (0..mesh.triangles.len()).filter(|&index| mesh.triangles[index].surface == surface).any(|index| {
         let [a, b, c] = mesh.corners(index);
@@ -258,108 +164,6 @@ fn on_surface(scene: &Scene, surface: u32, at: DVec3) -> bool {
         let inside = |p: DVec3, q: DVec3| (q - p).cross(at - p).dot(n) >= -1e-9 * n.length_squared();
         inside(a, b) && inside(b, c) && inside(c, a)
     })
-}
-
-/// Marks points inside closed furniture, and points of surroundings and backgrounds that belong to
-/// a task or surrounding area.
-///
-/// Where a norm compares the surrounding's mean with the task's, it is the total area, task included.
-fn exclude(
-    grid: &mut Grid,
-    spec: &AreaSpec,
-    index: usize,
-    specs: &[AreaSpec],
-    scene: &Scene,
-    is_total: bool,
-) {
-    let others: Vec<Vec<DVec2>> = specs
-        .iter()
-        .enumerate()
-        .filter(|&(other, area)| {
-            let owns = match spec.kind {
-                AreaKind::Surrounding => area.kind == AreaKind::Task && !is_total,
-                AreaKind::Background => matches!(area.kind, AreaKind::Task | AreaKind::Surrounding),
-                AreaKind::Task | AreaKind::Surface | AreaKind::Volume => false,
-            };
-            owns && other != index && area.room == spec.room
-        })
-        .filter_map(|(_, area)| plan_outline(&area.shape))
-        .collect();
-    for point in grid.points.iter_mut().filter(|point| point.excluded.is_none()) {
-        let flat = DVec2::new(point.position.x, point.position.y);
-        if others.iter().any(|outline| contains(outline, flat)) {
-            point.excluded = Some(Exclusion::InOtherArea);
-        } else if inside_furniture(scene, point, spec.kind == AreaKind::Surface) {
-            point.excluded = Some(Exclusion::InsideFurniture);
-        }
-    }
-}
-
-/// Outline in plan of a horizontal area.
-fn plan_outline(shape: &AreaShape) -> Option<Vec<DVec2>> {
-    let flat = |p: DVec3| DVec2::new(p.x, p.y);
-    match shape {
-        AreaShape::Rect { origin, u, v } if u.z == 0.0 && v.z == 0.0 => {
-            Some([*origin, *origin + *u, *origin + *u + *v, *origin + *v].map(flat).to_vec())
-        }
-        AreaShape::Polygon(corners) => Some(corners.iter().copied().map(flat).collect()),
-        AreaShape::Rect { .. } | AreaShape::Surface { .. } | AreaShape::Points(_) => None,
-    }
-}
-
-/// Even–odd rule.
-fn contains(outline: &[DVec2], p: DVec2) -> bool {
-    let mut inside = false;
-    for (index, &a) in outline.iter().enumerate() {
-        let b = outline[(index + 1) % outline.len()];
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            inside = !inside;
-        }
-    }
-    inside
-}
-
-/// Whether a point lies inside closed furniture: along every direction it leaves more solids than
-/// it enters. Several directions guard against open sheets; on a surface those into it are left
-/// out, so that a cabinet sunk into a wall hides the wall's points.
-fn inside_furniture(scene: &Scene, point: &grid::GridPoint, on_surface: bool) -> bool {
-    let at = point.position + if on_surface { point.normal * 1e-4 } else { DVec3::ZERO };
-    [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z]
-        .into_iter()
-        .filter(|axis| !on_surface || axis.dot(point.normal) > -0.5)
-        .all(|axis| {
-            // Slightly off the axes, so that the rays do not run along faces.
-            let direction = (axis + DVec3::new(1.3e-3, 2.7e-3, 3.9e-3)).normalize();
-            let into = direction.dot(point.normal);
-            let outward = on_surface && into < 0.0;
-            leaves_solid(scene, at, if outward { direction - 2.0 * into * point.normal } else { direction })
-        })
-}
-
-/// Counts the furniture faces along a ray up to the room's shell: more back sides than front sides means it starts inside.
-fn leaves_solid(scene: &Scene, mut origin: DVec3, direction: DVec3) -> bool {
-    const MOST_FACES: usize = 10_000;
-    let mut inside = 0;
-    for _ in 0..MOST_FACES {
-        let Some(hit) = scene.tracer.closest(origin, direction, &[]) else { break };
-        let surface = scene.tracer.surface(hit.triangle);
-        let is_furniture =
-            |hit: &Hit| scene.mesh.surfaces[scene.tracer.surface(hit.triangle) as usize].furniture;
-        let leaving = |hit: &Hit| if hit.front { -1 } else { 1 };
-        if !is_furniture(&hit) {
-            // A piece that stands on the floor shares a plane with it, and a ray may meet the floor first.
-            let touching = scene.tracer.closest(origin, direction, &[surface]);
-            if let Some(next) = touching.filter(|next| next.distance_m < hit.distance_m + TOUCHING_M)
-                && is_furniture(&next)
-            {
-                inside += leaving(&next);
-            }
-            break;
-        }
-        inside += leaving(&hit);
-        origin += direction * (hit.distance_m + scene.tracer.offset_m());
-    }
-    inside > 0
 }
 
 /// What is measured on an area: what the user listed, what its kind implies, what `[[require]]` needs.
@@ -454,6 +258,7 @@ fn kernel(quantity: Quantity, normal: DVec3) -> Option<Kernel> {
         Quantity::Modelling
         | Quantity::Luminance { .. }
         | Quantity::Ugr
+        | Quantity::Intensity
         | Quantity::ColourRendering
         | Quantity::DiscomfortIndex
         | Quantity::Declared(_)

@@ -1,8 +1,10 @@
 //! Norm rows and `[[require]]` → requirements on what is measured. What a norm regulates and nothing
 //! here can judge becomes a requirement that is "not assessed", with the reason: never silence.
 
+use super::whole_room::whole_room;
+use super::zones::zone_of;
 use super::{Plan, PlanError, PlannedArea, PlannedRequirement, PlannedRoom, Subject};
-use crate::norm::{self, Limit, Row, Standard, UgrMethod, Unknown, Verified, Zone};
+use crate::norm::{self, Limit, Row, Standard, Unknown, Verified, Zone};
 use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, CustomSubject, Norm, Project, Room, World};
 use crate::quantity::{Quantity, Statistic};
@@ -14,6 +16,14 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
             let planes = other_planes(norm, room, &plan.rooms[index]);
             plan.rooms[index].requirements.extend(required);
             plan.reasons.extend(planes);
+            let mut hung = room.luminaires.iter().map(|&l| &world.scene.luminaires[l].kind);
+            let in_emergency = norm.standard.application.illuminance_state.value == norm::State::Emergency;
+            if in_emergency && hung.all(|kind| kind.emergency.is_none()) {
+                plan.reasons.push(format!(
+                    "Room \"{}\" is dark in an emergency: none of its luminaires has an output then (`emergency`).",
+                    room.name
+                ));
+            }
         }
     }
     for requirement in &world.requirements {
@@ -80,13 +90,16 @@ fn subject(
 }
 
 /// What is measured or declared of a room as a whole; `None` for what needs points.
-fn of_room(quantity: Quantity, shr: f64) -> Option<Subject> {
+pub(super) fn of_room(quantity: Quantity, shr: f64) -> Option<Subject> {
     match quantity {
         Quantity::Ugr => Some(Subject::UgrTable(shr)),
         Quantity::DiscomfortIndex => Some(Subject::DiscomfortTable(shr)),
         Quantity::ColourRendering => Some(Subject::ColourRendering),
         Quantity::Declared(property) => Some(Subject::Declared(property)),
         Quantity::NotComputed(_) => Some(Subject::Missing("gershun does not compute this quantity".into())),
+        Quantity::Intensity => {
+            Some(Subject::Missing("gershun does not compute this quantity of a room".into()))
+        }
         _ => None,
     }
 }
@@ -155,7 +168,7 @@ fn of_norm(
             rows.push(row);
         }
         let Some(zone) = zone_of(room, area) else { continue };
-        let modified = modification(standard, room, row, own);
+        let modified = modification(standard, room, area, row, own);
         let level_lx = modified.as_ref().map(|(lx, _)| *lx);
         for limit in standard.requirements_at(row, level_lx).iter().filter(|limit| limit.zone == zone) {
             let subject = on(planned, place, limit.quantity, limit.statistic);
@@ -211,94 +224,33 @@ fn of_norm(
 }
 
 /// The statistic of the row's required illuminance.
-fn standard_level(row: &Row) -> Statistic {
+pub(super) fn standard_level(row: &Row) -> Statistic {
     row.illuminance().map_or(Statistic::Mean, |limit| limit.statistic)
 }
 
-/// The illuminance asked for in this context and how it came about; only for the room's own row.
+/// The illuminance asked for in this context and how it came about: the area's own modification, or the
+/// room's for the room's own row.
 fn modification(
     standard: &Standard,
     room: &Room,
+    area: &PlannedArea,
     row: &Row,
     own: Option<&String>,
 ) -> Option<(f64, Modified)> {
-    let modified = room.modified.as_ref().filter(|_| own == Some(&row.reference))?;
+    let of_room = room.modified.as_ref().filter(|_| own == Some(&row.reference));
+    let modified = area.modified.as_ref().or(of_room)?;
     let level_lx = standard.modified_illuminance(row, modified.steps).ok()?;
     let norm::Bound::Min(required_lx) = row.illuminance()?.bound else { return None };
     Some((level_lx, Modified { required_lx, steps: modified.steps, reason: modified.reason.clone() }))
 }
 
-/// What a row asks of the room as a whole, and what of it nothing in the project lets one judge.
-fn whole_room(
-    norm: &Norm,
-    world: &World,
-    index: usize,
-    room: &Room,
-    planned: &PlannedRoom,
-    row: &Row,
-    is_own: bool,
-) -> Vec<PlannedRequirement> {
-    let standard = &norm.standard;
-    let application = &standard.application;
-    let mut required = Vec::new();
-    for limit in &standard.requirements(row) {
-        let subjects: Vec<(Subject, String)> = match limit.zone {
-            Zone::Room | Zone::Declared => {
-                let observed = application.ugr_method.value == UgrMethod::Observers;
-                if limit.quantity == Quantity::Ugr && observed {
-                    observers(world, index, room)
-                } else {
-                    let subject = of_room(limit.quantity, application.ugr_shr.value).unwrap_or_else(|| {
-                        Subject::Missing("gershun does not compute this quantity of a room".into())
-                    });
-                    vec![(subject, room.name.clone())]
-                }
-            }
-            zone => {
-                let leading = matches!(limit.statistic, Statistic::Mean | Statistic::Min | Statistic::OfTask);
-                if !is_own || !leading || has_zone(room, planned, zone, application) {
-                    continue;
-                }
-                let name = zone_name(zone);
-                let reason = format!("the project lists no {name} in this room");
-                vec![(Subject::Missing(reason), name.to_owned())]
-            }
-        };
-        for (subject, name) in subjects {
-            required.push(requirement(standard, row, limit, subject, &name));
-        }
-    }
-    for unknown in &row.unknown {
-        let of_room = matches!(unknown.zone, Zone::Room | Zone::Declared);
-        if !is_own && !of_room {
-            continue;
-        }
-        let mut one = unknown_limit(standard, row, unknown);
-        one.subject_name = if of_room { room.name.clone() } else { zone_name(unknown.zone).to_owned() };
-        required.push(one);
-    }
-    required
-}
-
 /// What the norm limits and its file does not know.
-fn unknown_limit(standard: &Standard, row: &Row, unknown: &Unknown) -> PlannedRequirement {
+pub(super) fn unknown_limit(standard: &Standard, row: &Row, unknown: &Unknown) -> PlannedRequirement {
     let reason = format!("the norm's file has no value of {} for row {}", unknown.column, row.reference);
     unassessed(standard, &row.reference, unknown.quantity, unknown.statistic, reason)
 }
 
-/// A norm that judges glare at observers: every one of the room, by its worst direction.
-fn observers(world: &World, index: usize, room: &Room) -> Vec<(Subject, String)> {
-    let own = world.viewpoints.iter().enumerate().filter(|(_, view)| view.room == index);
-    let own: Vec<(Subject, String)> =
-        own.map(|(view, spec)| (Subject::Viewpoint(view), spec.name.clone())).collect();
-    if own.is_empty() {
-        let reason = "the norm judges UGR at observers and the project lists no viewpoint here".into();
-        return vec![(Subject::Missing(reason), room.name.clone())];
-    }
-    own
-}
-
-fn requirement(
+pub(super) fn requirement(
     standard: &Standard,
     row: &Row,
     limit: &Limit,
@@ -320,7 +272,7 @@ fn requirement(
 }
 
 /// Something regulated whose limit is not known: no number, no verdict, a reason.
-fn unassessed(
+pub(super) fn unassessed(
     standard: &Standard,
     clause: &str,
     quantity: Quantity,
@@ -359,73 +311,6 @@ fn other_planes(norm: &Norm, room: &Room, planned: &PlannedRoom) -> Vec<String> 
     said.collect()
 }
 
-/// Zone of the norm that an area plays; `None` for surfaces that are neither wall nor ceiling.
-fn zone_of(room: &Room, area: &PlannedArea) -> Option<Zone> {
-    match area.kind {
-        AreaKind::Task => Some(Zone::Task),
-        AreaKind::Surrounding => Some(Zone::Surrounding),
-        AreaKind::Background => Some(Zone::Background),
-        AreaKind::Volume => Some(Zone::Cylindrical),
-        AreaKind::Surface => {
-            let normal = area.grid.normal;
-            let top = room.floor_m + room.height_m;
-            let high = area.grid.points.iter().all(|point| (point.position.z - top).abs() < 0.3);
-            if normal.z < -0.99 && high {
-                Some(Zone::Ceiling)
-            } else if normal.z.abs() < 0.01 && area.grid.points.iter().all(|p| on_outline(room, p.position)) {
-                Some(Zone::Walls)
-            } else {
-                None
-            }
-        }
-    }
-}
-
-/// Whether a point stands at a wall of the room: a board or a screen elsewhere is no wall.
-fn on_outline(room: &Room, at: glam::DVec3) -> bool {
-    let p = glam::DVec2::new(at.x, at.y);
-    (0..room.footprint.len()).any(|index| {
-        let (a, b) = (room.footprint[index], room.footprint[(index + 1) % room.footprint.len()]);
-        let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        p.distance(a + (b - a) * t) < 0.3
-    })
-}
-
-fn has_zone(room: &Room, planned: &PlannedRoom, zone: Zone, rules: &norm::Application) -> bool {
-    // Beyond a task area that fills the room there is nothing to judge.
-    let around = matches!(zone, Zone::Surrounding | Zone::Background);
-    around && is_filled(room, planned, rules.border_m.value)
-        || planned.areas.iter().any(|area| zone_of(room, area) == Some(zone))
-}
-
-/// Whether the horizontal task areas cover the room up to the border that a grid may leave out.
-fn is_filled(room: &Room, planned: &PlannedRoom, border_m: f64) -> bool {
-    let corners = &room.footprint;
-    let count = corners.len();
-    let doubled: f64 = (0..count).map(|i| corners[i].perp_dot(corners[(i + 1) % count])).sum();
-    let around_m: f64 = (0..count).map(|i| corners[i].distance(corners[(i + 1) % count])).sum();
-    let needed_m2 = (0.5 * doubled.abs() - border_m * around_m).max(0.25 * doubled.abs());
-    let tasks = planned.areas.iter().filter(|area| area.kind == AreaKind::Task);
-    let covered_m2: f64 = tasks
-        .filter(|area| area.grid.normal.z.abs() > 0.99)
-        .map(|area| area.grid.edge_u.length() * area.grid.edge_v.length())
-        .sum();
-    covered_m2 >= needed_m2
-}
-
-fn zone_name(zone: Zone) -> &'static str {
-    match zone {
-        Zone::Task => "task area",
-        Zone::Surrounding => "surrounding area",
-        Zone::Background => "background area",
-        Zone::Walls => "wall",
-        Zone::Ceiling => "ceiling",
-        Zone::Cylindrical => "volume",
-        Zone::Room => "room",
-        Zone::Declared => "declared value",
-    }
-}
-
 fn bound(bound: norm::Bound) -> Bound {
     match bound {
         norm::Bound::Min(limit) => Bound::Min(limit),
@@ -433,6 +318,6 @@ fn bound(bound: norm::Bound) -> Bound {
     }
 }
 
-fn verified(verified: Verified) -> String {
+pub(super) fn verified(verified: Verified) -> String {
     verified.key().into()
 }

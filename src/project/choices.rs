@@ -22,6 +22,15 @@ pub enum Factor {
     Parts { llmf: f64, lsf: f64, lmf: f64 },
 }
 
+/// The light of a luminaire in an emergency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EmergencyChoice {
+    /// Share of the initial flux.
+    Share(f64),
+    /// lm.
+    Flux(f64),
+}
+
 /// The light-emitting area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OpeningChoice {
@@ -103,6 +112,23 @@ choice!(Factor, "a factor or { llmf, lsf, lmf }", {
         }
         let Parts { llmf, lsf, lmf } = Parts::deserialize(MapAccessDeserializer::new(map))?;
         Ok(Factor::Parts { llmf, lsf, lmf })
+    }
+});
+
+choice!(EmergencyChoice, "a share of the flux or { flux = lumens }", {
+    fn visit_f64<E: Error>(self, value: f64) -> Result<EmergencyChoice, E> {
+        Ok(EmergencyChoice::Share(value))
+    }
+    fn visit_i64<E: Error>(self, value: i64) -> Result<EmergencyChoice, E> {
+        Ok(EmergencyChoice::Share(value as f64))
+    }
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<EmergencyChoice, A::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Output {
+            flux: f64,
+        }
+        Ok(EmergencyChoice::Flux(Output::deserialize(MapAccessDeserializer::new(map))?.flux))
     }
 });
 

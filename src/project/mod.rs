@@ -17,8 +17,9 @@ use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
 pub use diagnostics::{Diagnostic, Place, suggestion};
-pub use photometric::{ReadError, is_same_file, read_image, read_photometry};
+pub use photometric::{ReadError, is_same_file, read_field, read_image, read_photometry};
 
+use crate::geometry::polygon;
 use crate::geometry::trace::Simd;
 use crate::grid::GridRule;
 use crate::image::View;
@@ -195,6 +196,14 @@ pub struct Room {
     pub luminaires: Vec<usize>,
 }
 
+impl Room {
+    /// Whether a point lies in the room.
+    pub fn contains(&self, point: DVec3) -> bool {
+        let height_m = point.z - self.floor_m;
+        (0.0..=self.height_m).contains(&height_m) && polygon::contains(&self.footprint, point.truncate(), 0.0)
+    }
+}
+
 /// Context of a room that changes the illuminance its row asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Modification {
@@ -233,6 +242,8 @@ pub struct AreaSpec {
     pub room: usize,
     /// Row of the norm for this area; `None`: the room's, then the norm's default.
     pub row: Option<String>,
+    /// Whether the illuminance of its row is raised or lowered here, and why; over the room's.
+    pub modified: Option<Modification>,
     /// Light scene by which it is judged; `None`: the first.
     pub light_scene: Option<usize>,
     /// Where it lies.

@@ -1,4 +1,4 @@
-//! Reads photometric files and images that are named on the command line, outside of any project.
+//! Reads photometric files, images and stored fields that are named on the command line, outside of any project.
 
 use std::path::{Path, PathBuf};
 
@@ -52,6 +52,18 @@ pub fn read_photometry(path: &Path) -> Result<Vec<u8>, ReadError> {
 /// A folder, a file that is too large, or one that cannot be read.
 pub fn read_image(path: &Path) -> Result<Vec<u8>, ReadError> {
     read_named(path, LARGEST_IMAGE, ["hdr", "exr"])
+}
+
+/// A file of stored fields, mapped: nobody should write to it while it is used.
+///
+/// # Errors
+/// A folder, or a file that cannot be read.
+pub fn read_field(path: &Path) -> Result<memmap2::Mmap, ReadError> {
+    let io = |source| ReadError::Io { path: path.to_owned(), source };
+    let file = std::fs::File::open(path).map_err(io)?;
+    // SAFETY: the mapping is private to this process and read-only. Another program that shortens the
+    // file meanwhile ends this one, as with every mapped file; that is told in the documentation.
+    unsafe { memmap2::Mmap::map(&file) }.map_err(io)
 }
 
 fn read_named(path: &Path, limit: u64, [one, other]: [&'static str; 2]) -> Result<Vec<u8>, ReadError> {

@@ -4,7 +4,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::choices::{AreaGrid, Factor, GoalChoice, OneOrTwo, OpeningChoice, Surfacing, TextOrDate};
+use super::choices::{
+    AreaGrid, EmergencyChoice, Factor, GoalChoice, OneOrTwo, OpeningChoice, Surfacing, TextOrDate,
+};
 
 /// Numbers and names with their place.
 pub type At<T> = Spanned<T>;
@@ -114,6 +116,7 @@ pub struct LuminaireSection {
     pub flux: Option<At<f64>>,
     pub area: Option<At<OpeningChoice>>,
     pub maintenance: Option<At<Factor>>,
+    pub emergency: Option<At<EmergencyChoice>>,
     #[serde(default)]
     pub body: Vec<At<String>>,
     pub ra: Option<At<f64>>,
@@ -224,6 +227,7 @@ pub struct AreaSection {
     pub of: Option<At<String>>,
     pub room: Option<At<String>>,
     pub row: Option<At<String>>,
+    pub modified: Option<At<ModifiedSection>>,
     pub light_scene: Option<At<String>>,
     pub rect: Option<At<RectSection>>,
     pub polygon: Option<At<Vec<[f64; 3]>>>,

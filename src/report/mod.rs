@@ -2,6 +2,7 @@
 //! input is [`Outcome`] (for single photometric files [`crate::lamp`]'s data), so equal outcomes give
 //! equal bytes: no clock, host, thread count or absolute path can enter.
 
+pub mod body;
 mod canvas;
 pub mod csv;
 mod file;
@@ -105,7 +106,7 @@ pub fn files(outcome: &Outcome, options: &Options) -> Result<Vec<(String, Vec<u8
     for (name, svg) in plan::files(outcome, languages[0]) {
         files.push((format!("plan/{name}"), svg.into_bytes()));
     }
-    files.extend(luminaires(outcome));
+    files.extend(luminaires(outcome, languages[0]));
     files.push(("report.html".to_owned(), page::page(outcome, &languages).into_bytes()));
     let provenance = provenance::provenance(outcome, &files)?;
     files.push((folder::MANIFEST.to_owned(), provenance));
@@ -113,13 +114,13 @@ pub fn files(outcome: &Outcome, options: &Options) -> Result<Vec<(String, Vec<u8
 }
 
 /// The polar diagram of every luminaire type, once.
-fn luminaires(outcome: &Outcome) -> Vec<(String, Vec<u8>)> {
+fn luminaires(outcome: &Outcome, lang: Lang) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<(String, Vec<u8>)> = Vec::new();
     for kind in outcome.rooms.iter().flat_map(|room| &room.types) {
         let name = format!("luminaires/{}.svg", plan::file_name(&kind.name));
         let dark = !(kind.distribution.flux().0 > 0.0);
         if !dark && !files.iter().any(|(known, _)| known.to_lowercase() == name.to_lowercase()) {
-            let svg = lamp::diagram(&kind.name, &kind.description, &kind.distribution);
+            let svg = lamp::diagram(&kind.name, &kind.description, &kind.distribution, lang);
             files.push((name, svg.into_bytes()));
         }
     }

@@ -109,7 +109,7 @@ fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
         | Quantity::Semicylindrical { .. }
         | Quantity::Hemispherical
         | Quantity::Spherical => illuminance_decimals(value),
-        Quantity::Luminance { .. } | Quantity::ColourRendering => 0,
+        Quantity::Luminance { .. } | Quantity::Intensity | Quantity::ColourRendering => 0,
         Quantity::Modelling
         | Quantity::Declared(Property::PstLm | Property::Svm)
         | Quantity::NotComputed(Unmeasured::DaylightGlare) => 2,
@@ -128,6 +128,7 @@ pub fn unit(lang: Lang, quantity: Quantity, statistic: Statistic) -> String {
     match quantity.unit() {
         "lx" => format!("\u{a0}{}", word(lang, Term::UnitLux)),
         "cd/m²" => format!("\u{a0}{}", word(lang, Term::UnitNits)),
+        "cd" => format!("\u{a0}{}", word(lang, Term::UnitCandela)),
         "%" => "\u{a0}%".into(),
         _ => String::new(),
     }

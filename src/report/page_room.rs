@@ -63,6 +63,15 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         let factor = number::fixed(lang, dimming.factor, 2);
         phrase(lang, term, &[&factor, &escape(&dimming.subject)])
     });
+    let by_group = room.dimming.as_ref().and_then(|dimming| dimming.groups.as_ref());
+    let by_group = by_group.map_or(String::new(), |groups| {
+        let each = groups
+            .groups
+            .iter()
+            .map(|own| format!("{} {}", escape(&own.group), number::fixed(lang, own.factor, 3)));
+        let term = if groups.of == "power" { Term::DimGroupsPower } else { Term::DimGroupsFlux };
+        phrase(lang, term, &[&each.collect::<Vec<_>>().join(", "), &number::percent(lang, groups.share)])
+    });
     let metres = |length| format!("{} {}", number::metres(lang, length), word(lang, Term::UnitMetre));
     let [ceiling, walls, floor] = room.reflectances.map(|reflectance| number::fixed(lang, reflectance, 2));
     pairs(&[
@@ -76,6 +85,7 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         (word(lang, Term::RowOfNorm), room.row.as_deref().map_or(String::new(), escape)),
         (word(lang, Term::PowerDensity), density),
         (word(lang, Term::Dimming), dimming),
+        (word(lang, Term::DimGroups), by_group),
     ])
 }
 
@@ -176,8 +186,7 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
                 statistic_of(subject, statistic)
                     .map_or("—".to_owned(), |value| number::value(lang, field.quantity, statistic, value))
             };
-            let state =
-                word(lang, if field.maintained { Term::MaintainedValues } else { Term::InitialValues });
+            let state = words::condition(lang, field.condition);
             let unit = number::unit(lang, field.quantity, Statistic::Mean);
             let unit = unit.trim_start_matches('\u{a0}');
             let label = symbol(&words::symbol(lang, field.quantity, Statistic::Value));

@@ -73,7 +73,6 @@ impl Drawing<'_> {
     fn quantity(&self) -> String {
         let Subject { room, area, field, .. } = self.subject;
         let lang = self.lang;
-        let state = if field.maintained { Term::MaintainedValues } else { Term::InitialValues };
         let first = area.grid.points.first();
         let height_m = first.map_or(area.grid.origin.z, |point| point.position.z) - room.floor_m;
         let place = match self.view.sight {
@@ -83,7 +82,11 @@ impl Drawing<'_> {
             }
             Sight::Elevation => word(lang, Term::ViewedFromRoom).to_owned(),
         };
-        format!("{}, {} · {place}", words::quantity(lang, field.quantity), word(lang, state))
+        format!(
+            "{}, {} · {place}",
+            words::quantity(lang, field.quantity),
+            words::condition(lang, field.condition)
+        )
     }
 
     fn conditions(&self) -> String {

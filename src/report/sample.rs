@@ -49,7 +49,7 @@ fn field(grid: &Grid, light_scene: &str, quantity: Quantity, value: impl Fn(DVec
     PointField {
         light_scene: light_scene.into(),
         quantity,
-        maintained: true,
+        condition: crate::outcome::Condition::MAINTAINED,
         n: 64,
         points: grid.points.iter().map(at).collect(),
     }
@@ -281,6 +281,11 @@ fn office() -> RoomOutcome {
             factor: 0.96,
             subject: NASTY.into(),
             quantity: "E_h".into(),
+            groups: Some(GroupDimming {
+                share: 0.81,
+                of: "power".into(),
+                groups: vec![GroupFactor { group: NASTY.into(), factor: 0.75 }],
+            }),
             others_pass: false,
         }),
         ugr_table: vec![

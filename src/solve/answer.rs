@@ -19,6 +19,7 @@ use super::look::{Landing, Sight, add_direct, add_emission, look};
 use super::{PARTS, Part, Prepared, Sheet, lifted};
 use crate::query::{Ray, Receiver};
 use crate::rng::{Rng, Stratified};
+use crate::scene::BodiesMet;
 use crate::sphere;
 
 /// Steps after which a walk is cut and counted: only a sealed cavity without absorption gets here.
@@ -234,10 +235,14 @@ pub(super) fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, s
         return;
     }
     let (mut origin, mut direction, mut reflections) = (ray.point, ray.direction, 0);
+    let mut bodies = BodiesMet::default();
     loop {
         let hit = scene.tracer.closest(origin, direction, &[]);
         if reflections == 1 {
-            for luminaire in 0..scene.luminaires.len() {
+            for (luminaire, placed) in scene.luminaires.iter().enumerate() {
+                if bodies.shut(placed) {
+                    continue;
+                }
                 if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, origin, direction) {
                     let passed = emitters.uncovered(luminaire, (origin, direction), distance_m, hit.as_ref());
                     out[scene.channel_of[luminaire] * PARTS + Part::Image as usize] +=
@@ -259,8 +264,10 @@ pub(super) fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, s
             }
             direction += 2.0 * cos * normal;
             origin = point + normal * scene.tracer.offset_m();
+            bodies.reflected(scene, hit.triangle);
         } else if choice < reflected + passed {
             origin = point - normal * scene.tracer.offset_m();
+            bodies.passed(scene, hit.triangle);
         } else {
             return;
         }

@@ -9,7 +9,7 @@ use super::lobe::scatter;
 use crate::emitters::{Arrival, Emitters};
 use crate::geometry::trace::Hit;
 use crate::rng::Rng;
-use crate::scene::{Channel, Scene};
+use crate::scene::{BodiesMet, Channel, Scene};
 
 /// Specular bounces after which a walk is cut and counted: only a cage of perfect mirrors gets here.
 const MOST_BOUNCES: u32 = 10_000;
@@ -103,11 +103,12 @@ fn follow(
     let (mut origin, mut direction) = (origin, direction);
     let mut reflections = 0;
     let mut owned = true;
+    let mut bodies = BodiesMet::default();
     for _ in 0..MOST_BOUNCES {
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if !owned {
-            add_openings(emitters, (origin, direction), hit.as_ref(), weight, met);
+            add_openings(emitters, (origin, direction), hit.as_ref(), &bodies, weight, met);
         }
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -134,9 +135,11 @@ fn follow(
             direction += 2.0 * cos * normal;
             origin = point + normal * lift;
             reflections += 1;
+            bodies.reflected(scene, hit.triangle);
             owned = reflections == 1 && emitters.imaged[hit.triangle as usize];
         } else if choice < reflected + passed {
             origin = point - normal * lift;
+            bodies.passed(scene, hit.triangle);
         } else {
             return None;
         }
@@ -146,8 +149,18 @@ fn follow(
 }
 
 /// Adds the luminance of every opening along a ray before what it meets.
-fn add_openings(emitters: &Emitters, ray: (DVec3, DVec3), hit: Option<&Hit>, weight: f64, met: &mut [f64]) {
-    for luminaire in 0..emitters.scene.luminaires.len() {
+fn add_openings(
+    emitters: &Emitters,
+    ray: (DVec3, DVec3),
+    hit: Option<&Hit>,
+    bodies: &BodiesMet,
+    weight: f64,
+    met: &mut [f64],
+) {
+    for (luminaire, placed) in emitters.scene.luminaires.iter().enumerate() {
+        if bodies.shut(placed) {
+            continue;
+        }
         if let Some((luminance, distance_m)) = emitters.opening_along(luminaire, ray.0, ray.1) {
             met[emitters.scene.channel_of[luminaire]] +=
                 weight * luminance * emitters.uncovered(luminaire, ray, distance_m, hit);

@@ -14,13 +14,15 @@ mod look;
 mod path;
 pub mod picture;
 mod prepare;
+mod refine;
 mod thumbnail;
 
 use glam::DVec3;
 
 use crate::emitters::{Emitters, unshadowed};
 use crate::field::LuminanceField;
-use crate::query::Demand;
+use crate::query::{Demand, Ray};
+use crate::rng::Rng;
 use crate::scene::Scene;
 
 pub use glance::{GlanceEffort, Mended, glances, mend};
@@ -60,6 +62,8 @@ pub enum Method {
 pub struct Effort {
     /// Patch area of the field, m²; `None`: chosen from the scene's surface area.
     pub patch_m2: Option<f64>,
+    /// Whether patches over which direct light varies strongly are split.
+    pub adaptive: bool,
     /// Transport links per patch side.
     pub links: u32,
     /// Gather rays per receiver and block.
@@ -86,6 +90,7 @@ impl Default for Effort {
     fn default() -> Self {
         Self {
             patch_m2: None,
+            adaptive: true,
             links: 32,
             gather: 16,
             highlights: 4,
@@ -226,7 +231,18 @@ pub fn answer(prepared: &Prepared, block: u64) -> Sheet {
     sheet
 }
 
+/// Luminance along a ray by the method of links, added to `row`: one value per channel and part, cd/m².
+/// For those who have more rays than a sheet should hold.
+pub fn answer_ray(prepared: &Prepared, ray: &Ray, rng: &mut Rng, row: &mut [f64]) {
+    answer::one_ray(prepared, ray, rng, row);
+}
+
 impl Prepared<'_> {
+    /// Seed of all randomness.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// The emitters, for what an observer sees.
     pub fn emitters(&self) -> &Emitters<'_> {
         &self.emitters

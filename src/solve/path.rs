@@ -9,7 +9,7 @@ use super::{Counts, PARTS, Part, Prepared, Sheet, lifted};
 use crate::geometry::trace::Hit;
 use crate::query::{Kernel, Ray};
 use crate::rng::Rng;
-use crate::scene::{Channel, Scene};
+use crate::scene::{BodiesMet, Channel, Scene};
 use crate::sphere;
 
 /// Block `stream` of a `Path` solution.
@@ -143,6 +143,7 @@ fn trace(
     let (mut origin, mut direction, mut weight, mut sees_lamps) = (origin, direction, weight, sees_lamps);
     let mut reflected_once = false;
     let mut diffuse_seen = false;
+    let mut bodies = BodiesMet::default();
     for _ in 0..100_000 {
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
@@ -152,7 +153,7 @@ fn trace(
                 (false, true) => Part::Image,
                 (true, _) => Part::Indirect,
             };
-            add_lamps(scene, origin, direction, hit.as_ref(), weight, part, out);
+            add_lamps(scene, (origin, direction), hit.as_ref(), &bodies, weight, part, out);
         }
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -198,6 +199,9 @@ fn trace(
         } else if next.direction.z > 0.0 {
             sees_lamps = true;
             reflected_once = true;
+            bodies.reflected(scene, hit.triangle);
+        } else {
+            bodies.passed(scene, hit.triangle);
         }
         let survival = next.weight.min(1.0);
         if rng.uniform() >= survival {
@@ -212,14 +216,17 @@ fn trace(
 
 fn add_lamps(
     scene: &Scene,
-    origin: DVec3,
-    direction: DVec3,
+    (origin, direction): (DVec3, DVec3),
     hit: Option<&Hit>,
+    bodies: &BodiesMet,
     weight: f64,
     part: Part,
     out: &mut [f64],
 ) {
     for (index, lamp) in scene.luminaires.iter().enumerate() {
+        if bodies.shut(lamp) {
+            continue;
+        }
         let into = lamp.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - lamp.position), into * direction);
         let Some(met) = lamp.kind.opening.along(o, d) else { continue };

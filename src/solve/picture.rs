@@ -15,12 +15,14 @@ use super::highlights::Highlights;
 use super::look::Landing;
 use super::{Counts, Effort, PARTS, Prepared, answer, prepare};
 use crate::emitters::Emitters;
+use crate::field::store::{Made, StoredField};
 use crate::field::{LuminanceField, Smooth};
+use crate::geometry::trace::Hit;
 use crate::image::{LuminanceImage, View};
 use crate::material::Bsdf;
 use crate::query::Ray;
 use crate::rng::Rng;
-use crate::scene::{Channel, Scene};
+use crate::scene::{BodiesMet, Channel, Scene};
 
 /// Edge of the squares of pixels that are worked on together.
 const TILE: usize = 8;
@@ -48,9 +50,7 @@ pub enum Detail {
 #[derive(Debug)]
 pub struct Exposure<'s> {
     emitters: Emitters<'s>,
-    field: LuminanceField,
-    direct: LuminanceField,
-    seed: u64,
+    stored: StoredField,
 }
 
 /// A field under one light scene.
@@ -73,26 +73,45 @@ pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
     let diffuse = |t: usize| scene.bsdf(t as u32).specular(1.0).is_none();
     let triangles = 0..scene.mesh.triangles.len();
     let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
-    let effort = Effort { patch_m2: Some(lit_m2 / PATCHES), links: LINKS, ..Effort::default() };
+    let patch_m2 = (lit_m2 / PATCHES).max(1e-12);
+    // Smoothing takes patches of about one size.
+    let effort = Effort { patch_m2: Some(patch_m2), adaptive: false, links: LINKS, ..Effort::default() };
     let highlights = Highlights::new(&emitters);
     let (field, direct) = prepare::parts(&emitters, &highlights, &effort, seed);
-    Exposure { emitters, field, direct, seed }
+    let made = Made { seed, links: LINKS, patch_m2 };
+    Exposure { emitters, stored: StoredField { made, field, direct } }
+}
+
+/// Pictures of a scene from its field as it was stored.
+pub fn from_store(scene: &Scene, stored: StoredField) -> Exposure<'_> {
+    Exposure { emitters: Emitters::new(scene), stored }
 }
 
 impl Exposure<'_> {
+    /// The field, to be stored.
+    pub fn stored(&self) -> &StoredField {
+        &self.stored
+    }
+
+    /// [`Exposure::stored`], kept.
+    pub fn into_stored(self) -> StoredField {
+        self.stored
+    }
+
     /// The field with a factor for each channel.
     pub fn picture(&self, weights: &[f64]) -> Picture<'_> {
         let scene = self.emitters.scene;
         let weighted = |values: &[f64]| values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
-        let patches = self.field.patches();
-        let stored: Vec<f64> = (0..patches.sides()).map(|side| weighted(self.field.at(side))).collect();
+        let patches = self.stored.field.patches();
+        let stored: Vec<f64> =
+            (0..patches.sides()).map(|side| weighted(self.stored.field.at(side))).collect();
         let albedo = |side: usize| {
             let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
             reflectance + transmittance
         };
         let indirect: Vec<f64> = (0..patches.sides())
             .map(|side| {
-                let value = stored[side] - weighted(self.direct.at(side));
+                let value = stored[side] - weighted(self.stored.direct.at(side));
                 if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 }
             })
             .collect();
@@ -108,11 +127,11 @@ impl Exposure<'_> {
         let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind);
         Picture {
             emitters: &self.emitters,
-            field: &self.field,
+            field: &self.stored.field,
             weights: weights.to_vec(),
             stored,
             indirect: smooth,
-            seed: self.seed,
+            seed: self.stored.made.seed,
         }
     }
 }
@@ -208,7 +227,7 @@ fn tile(
         }
         let at = [(corner[0] + column) as f64 + 0.5, (corner[1] + row) as f64 + 0.5];
         if let Some(direction) = view.direction(size, at) {
-            sight.look(picture, view.eye, direction, Path::FRESH, counts);
+            sight.look(picture, view.eye, direction, Path::fresh(), counts);
         }
     }
     let out = |index: usize| index / TILE * size[0] + corner[0] + index % TILE;
@@ -228,14 +247,17 @@ fn tile(
 }
 
 /// A branch of a ray.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Path {
     share: f64,
     bounces: u32,
+    bodies: BodiesMet,
 }
 
 impl Path {
-    const FRESH: Self = Self { share: 1.0, bounces: 0 };
+    fn fresh() -> Self {
+        Self { share: 1.0, bounces: 0, bodies: BodiesMet::default() }
+    }
 }
 
 impl Sight {
@@ -244,8 +266,7 @@ impl Sight {
         let scene = picture.emitters.scene;
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
-        let reach_m = hit.map_or(f64::INFINITY, |hit| hit.distance_m);
-        self.luminance += path.share * picture.openings(origin, direction, reach_m);
+        self.luminance += path.share * picture.openings((origin, direction), hit.as_ref(), &path.bodies);
         let Some(hit) = hit else {
             counts.escaped += 1;
             return;
@@ -273,7 +294,13 @@ impl Sight {
         let onward =
             [(reflected, point + lift, direction + 2.0 * cos * normal), (passed, point - lift, direction)];
         for (share, origin, direction) in onward {
-            let next = Path { share: path.share * share, bounces: path.bounces + 1 };
+            let (share, bounces) = (path.share * share, path.bounces + 1);
+            let mut next = Path { share, bounces, bodies: path.bodies.clone() };
+            if direction.dot(normal) > 0.0 {
+                next.bodies.reflected(scene, hit.triangle);
+            } else {
+                next.bodies.passed(scene, hit.triangle);
+            }
             if next.share < FAINTEST {
                 continue;
             }
@@ -287,26 +314,18 @@ impl Sight {
 }
 
 impl Picture<'_> {
-    /// Luminance of all openings along a ray before `reach_m`, cd/m². A luminaire's own housing does
+    /// Luminance of all openings along a ray before what it meets, cd/m². A luminaire's own housing does
     /// not hide its opening.
-    fn openings(&self, origin: DVec3, direction: DVec3, reach_m: f64) -> f64 {
+    fn openings(&self, ray: (DVec3, DVec3), hit: Option<&Hit>, bodies: &BodiesMet) -> f64 {
         let scene = self.emitters.scene;
         let mut sum = 0.0;
         for (index, luminaire) in scene.luminaires.iter().enumerate() {
-            let weight = self.weights[scene.channel_of[index]];
-            let Some((luminance, distance_m)) = self.emitters.opening_along(index, origin, direction) else {
+            if bodies.shut(luminaire) {
                 continue;
-            };
-            // The opening may lie *in* the surface that ends the ray.
-            let nearer_m = distance_m - 2.0 * scene.tracer.offset_m();
-            let free = nearer_m < reach_m
-                || !luminaire.body.is_empty()
-                    && scene
-                        .tracer
-                        .closest(origin, direction, &luminaire.body)
-                        .is_none_or(|hit| nearer_m < hit.distance_m);
-            if free {
-                sum += weight * luminance;
+            }
+            if let Some((luminance, distance_m)) = self.emitters.opening_along(index, ray.0, ray.1) {
+                let weight = self.weights[scene.channel_of[index]];
+                sum += weight * luminance * self.emitters.uncovered(index, ray, distance_m, hit);
             }
         }
         sum

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::Effort;
 use super::highlights::{self, Highlights};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
+use super::refine::refine;
 use crate::emitters::Emitters;
 use crate::field::{LuminanceField, Patches};
 use crate::rng::{Rng, Stratified};
@@ -62,7 +63,10 @@ pub(super) fn parts(
         .map(|t| scene.mesh.normal_and_area(t).1)
         .sum();
     let patch_m2 = effort.patch_m2.unwrap_or(area_m2 / PATCHES).max(1e-12);
-    let patches = Patches::new(&scene.mesh, patch_m2, diffuse);
+    let mut patches = Patches::of_scene(scene, patch_m2);
+    if effort.adaptive {
+        refine(emitters, &mut patches);
+    }
     let channels = scene.channels.len();
     let collected: Vec<Collected> = (0..patches.sides())
         .into_par_iter()

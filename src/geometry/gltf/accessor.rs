@@ -183,6 +183,19 @@ impl<'a> Buffers<'a> {
         Ok(Layout { start: view_start + offset, stride, buffer })
     }
 
+    /// The bytes of a buffer view.
+    pub(super) fn view(&mut self, index: usize, user: &str) -> Result<Vec<u8>, GltfError> {
+        let name = format!("buffer view {index} of {user}");
+        let view = self.root.buffer_views.get(index).ok_or_else(|| GltfError::Reference {
+            from: user.to_owned(),
+            to: format!("buffer view {index}"),
+        })?;
+        let length = count_of(view.byte_length.0, &name)?;
+        let layout = self.layout(index, 0, length, 1, None, &name)?;
+        let bytes = self.loaded[layout.buffer].as_deref().expect("layout() loaded it");
+        Ok(bytes[layout.start..layout.start + length].to_vec())
+    }
+
     fn collect<T>(&self, layout: &Layout, count: usize, size: usize, read: &dyn Fn(&[u8]) -> T) -> Vec<T> {
         let bytes = self.loaded[layout.buffer].as_deref().expect("layout() loaded it");
         (0..count)

@@ -4,6 +4,9 @@
 use glam::{DMat4, DVec3};
 use gltf::json::Value;
 
+use super::GltfError;
+use super::container::{Source, source};
+
 /// A light source at its node, in project coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImportedLight {
@@ -13,6 +16,10 @@ pub struct ImportedLight {
     pub position: DVec3,
     /// Unit direction of its beam, the node's −Z.
     pub direction: DVec3,
+    /// Unit direction of the node's +X: a photometric file's 0° plane lies on its side of the beam.
+    pub right: DVec3,
+    /// The node's transform turns left into right.
+    pub mirrored: bool,
     /// What it is.
     pub kind: LightKind,
     /// A range beyond which renderers cut its light off, in m; light knows none.
@@ -40,13 +47,22 @@ pub enum LightKind {
     Directional,
     /// A photometric file (EXT_lights_ies).
     Profile {
-        /// Where it lies, relative to the glTF file.
-        uri: String,
+        /// Where it lies.
+        file: ProfileFile,
         /// Factor of its intensities.
         factor: f64,
     },
     /// One that cannot be read, and why.
     Unreadable(String),
+}
+
+/// Where a photometric file lies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ProfileFile {
+    /// Relative to the glTF file.
+    Path(String),
+    /// Within the glTF file or one of its buffers.
+    Bytes(Vec<u8>),
 }
 
 /// What the file says about lights, before its JSON is taken apart.
@@ -55,12 +71,21 @@ pub(super) struct Lights {
     of_node: Vec<Vec<Described>>,
 }
 
-#[derive(Clone)]
 struct Described {
     name: Option<String>,
-    kind: LightKind,
+    kind: Stored,
     range_m: Option<f64>,
     count: usize,
+}
+
+/// A light, or where the rest of it is.
+enum Stored {
+    Light(LightKind),
+    /// A photometric file in a buffer view.
+    View {
+        index: usize,
+        factor: f64,
+    },
 }
 
 impl Lights {
@@ -72,7 +97,9 @@ impl Lights {
         let of_node = nodes.iter().map(|node| {
             let mut held = Vec::new();
             if let Some(light) = node.pointer("/extensions/KHR_lights_punctual") {
-                held.push(described(light, punctual.as_ref(), |_, light| punctual_kind(light)));
+                held.push(described(light, punctual.as_ref(), |_, light| {
+                    punctual_kind(light).map(Stored::Light)
+                }));
             }
             if let Some(light) = node.pointer("/extensions/EXT_lights_ies") {
                 held.push(described(light, profiles.as_ref(), profile_kind));
@@ -82,15 +109,30 @@ impl Lights {
         Self { of_node: of_node.collect() }
     }
 
-    /// The lights at a node.
-    pub(super) fn at(&self, node: usize, node_name: &str, world_from_node: DMat4) -> Vec<ImportedLight> {
+    /// The lights at a node; `view` is asked for the bytes of a buffer view.
+    pub(super) fn at(
+        &self,
+        node: usize,
+        node_name: &str,
+        world_from_node: DMat4,
+        view: &mut dyn FnMut(usize) -> Result<Vec<u8>, GltfError>,
+    ) -> Vec<ImportedLight> {
+        let mut kind = |light: &Described| match &light.kind {
+            Stored::Light(kind) => kind.clone(),
+            Stored::View { index, factor } => match view(*index) {
+                Ok(bytes) => LightKind::Profile { file: ProfileFile::Bytes(bytes), factor: *factor },
+                Err(error) => LightKind::Unreadable(error.to_string()),
+            },
+        };
         let place = |light: &Described| ImportedLight {
             name: light.name.clone().unwrap_or_else(|| {
                 if node_name.is_empty() { format!("light_{}", light.count) } else { node_name.to_owned() }
             }),
             position: world_from_node.w_axis.truncate(),
             direction: world_from_node.transform_vector3(DVec3::NEG_Z).normalize_or_zero(),
-            kind: light.kind.clone(),
+            right: world_from_node.transform_vector3(DVec3::X).normalize_or_zero(),
+            mirrored: world_from_node.determinant() < 0.0,
+            kind: kind(light),
             range_m: light.range_m,
         };
         self.of_node.get(node).into_iter().flatten().map(place).collect()
@@ -100,7 +142,7 @@ impl Lights {
 fn described(
     at_node: &Value,
     list: Option<&Value>,
-    kind: impl FnOnce(&Value, &Value) -> Result<LightKind, String>,
+    kind: impl FnOnce(&Value, &Value) -> Result<Stored, String>,
 ) -> Described {
     let index = at_node.get("light").and_then(Value::as_u64).unwrap_or(u64::MAX) as usize;
     let light = list.and_then(|list| list.get(index));
@@ -111,7 +153,7 @@ fn described(
     let text = |key: &str| light.and_then(|light| light.get(key)?.as_str().map(str::to_owned));
     Described {
         name: text("name").filter(|name| !name.is_empty()),
-        kind: kind.unwrap_or_else(LightKind::Unreadable),
+        kind: kind.unwrap_or_else(|why| Stored::Light(LightKind::Unreadable(why))),
         range_m: light.and_then(|light| light.get("range")?.as_f64()),
         count: index,
     }
@@ -119,7 +161,7 @@ fn described(
 
 /// KHR_lights_punctual: cd, colour in linear Rec. 709.
 fn punctual_kind(light: &Value) -> Result<LightKind, String> {
-    let cd = positive(light, "intensity", 1.0)? * luminance(light)?;
+    let cd = positive(light, "intensity", 1.0)? * luminance(light, f64::MAX)?;
     match light.get("type").and_then(Value::as_str) {
         Some("directional") => Ok(LightKind::Directional),
         Some("point") => Ok(LightKind::Point { cd }),
@@ -136,12 +178,20 @@ fn punctual_kind(light: &Value) -> Result<LightKind, String> {
     }
 }
 
-/// EXT_lights_ies: multiplier and colour stand at the node.
-fn profile_kind(at_node: &Value, light: &Value) -> Result<LightKind, String> {
-    let factor = positive(at_node, "multiplier", 1.0)? * luminance(at_node)?;
-    let uri = light.get("uri").and_then(Value::as_str).filter(|uri| !uri.starts_with("data:"));
-    let uri = uri.ok_or("its photometric file lies within the glTF file: unpack it and name it as `uri`")?;
-    Ok(LightKind::Profile { uri: uri.to_owned(), factor })
+/// EXT_lights_ies: multiplier and colour, cut at 1, stand at the node; the file is a path, inline or in a
+/// buffer view.
+fn profile_kind(at_node: &Value, light: &Value) -> Result<Stored, String> {
+    let factor = positive(at_node, "multiplier", 1.0)? * luminance(at_node, 1.0)?;
+    if let Some(uri) = light.get("uri").and_then(Value::as_str) {
+        let file = match source(uri)? {
+            Source::Path(path) => ProfileFile::Path(path),
+            Source::Inline(bytes) => ProfileFile::Bytes(bytes),
+        };
+        return Ok(Stored::Light(LightKind::Profile { file, factor }));
+    }
+    let index = light.get("bufferView").and_then(Value::as_u64);
+    let index = index.ok_or("it names no photometric file, neither by `uri` nor by `bufferView`")?;
+    Ok(Stored::View { index: usize::try_from(index).unwrap_or(usize::MAX), factor })
 }
 
 fn positive(of: &Value, key: &str, default: f64) -> Result<f64, String> {
@@ -150,12 +200,15 @@ fn positive(of: &Value, key: &str, default: f64) -> Result<f64, String> {
     value.ok_or_else(|| format!("its {key} is no number ≥ 0"))
 }
 
-/// Y of a colour, 1 where none is written.
-fn luminance(of: &Value) -> Result<f64, String> {
+/// Y of a colour whose parts are cut at `most`, 1 where none is written.
+fn luminance(of: &Value, most: f64) -> Result<f64, String> {
     let Some(colour) = of.get("color") else { return Ok(1.0) };
     let parts: Vec<f64> = colour.as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
     match parts[..] {
-        [r, g, b] if parts.iter().all(|c| *c >= 0.0) => Ok(0.2126 * r + 0.7152 * g + 0.0722 * b),
+        [r, g, b] if parts.iter().all(|c| *c >= 0.0) => {
+            let [r, g, b] = [r, g, b].map(|c| c.min(most));
+            Ok(0.2126 * r + 0.7152 * g + 0.0722 * b)
+        }
         _ => Err("its color is none".to_owned()),
     }
 }

@@ -13,7 +13,7 @@ use gltf::json;
 
 use super::mesh::Mesh;
 use accessor::Buffers;
-pub use lights::{ImportedLight, LightKind};
+pub use lights::{ImportedLight, LightKind, ProfileFile};
 use walk::Walk;
 
 /// What an import yields.

@@ -88,7 +88,8 @@ impl<'a> Walk<'a> {
                 return Err(GltfError::Transform(name));
             }
             let path = parent.map_or(name.clone(), |p| format!("{}/{name}", out.nodes[p].path));
-            out.lights.extend(self.lights.at(index, &name, world_from_node));
+            let mut view = |index: usize| self.buffers.view(index, &name);
+            out.lights.extend(self.lights.at(index, &name, world_from_node, &mut view));
             let own = out.nodes.len();
             out.nodes.push(ImportedNode { name, path, parent, surfaces: Vec::new() });
             if let Some(mesh) = node.mesh {

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::area_surface::on_surface;
 use super::draft::{Draft, Located, in_room, locate, room_named, room_names};
 use super::lists::Table;
-use super::zones;
+use super::{settings, zones};
 use crate::geometry::polygon;
 use crate::grid::GridRule;
 use crate::project::choices::AreaGrid;
@@ -61,6 +61,16 @@ pub fn add(
         let (Some((shape, world, room)), Ok(_)) = (placed, wanted) else {
             continue;
         };
+        let own_row = section.row.as_ref().map(At::get_ref).or(drafts[world].rooms[room].row.as_ref());
+        let modified = match &section.modified {
+            Some(modified) if kind != AreaKind::Task => {
+                let message = "only a task area has an illuminance to modify";
+                context.error(&modified.span(), message, "the zones round it follow");
+                None
+            }
+            Some(modified) => settings::modification(modified, own_row, file, norm, context),
+            None => None,
+        };
         if let Some(of) = &section.of {
             surroundings.push((world, drafts[world].areas.len(), of.clone()));
         }
@@ -70,6 +80,7 @@ pub fn add(
             of: None,
             room,
             row: section.row.as_ref().map(|row| row.get_ref().clone()),
+            modified,
             light_scene,
             shape,
             rule,

@@ -7,6 +7,7 @@ use super::draft::Draft;
 use super::luminaires::{Kind, profile};
 use super::places::{Hanging, hang};
 use crate::geometry::gltf::{ImportedLight, LightKind};
+use crate::luminaire::orientation;
 use crate::photometry::IntensityDistribution;
 use crate::project::context::Context;
 use crate::project::schema::{At, SceneSection};
@@ -58,12 +59,20 @@ pub fn add(scene: Option<&At<SceneSection>>, drafts: &mut [Draft], context: &mut
             types.push(kind);
             types.len() - 1
         };
-        let hanging = Hanging { kind: index, group: light.name.clone(), rotate_deg: 0.0, dim: 1.0 };
         let aim = if light.direction == DVec3::ZERO { DVec3::NEG_Z } else { light.direction };
+        let rotate_deg = turn_deg(aim, light.right);
+        let hanging = Hanging { kind: index, group: light.name.clone(), rotate_deg, dim: 1.0 };
         let mut report =
             |context: &mut Context, message: String, hint: &str| context.error(&wanted.span(), message, hint);
         hang(&hanging, &mut types, light.position, aim, drafts, context, &mut report);
     }
+}
+
+/// `rotate` that lays a luminaire's +x, a photometric file's 0° plane, towards the node's +X.
+fn turn_deg(aim: DVec3, right: DVec3) -> f64 {
+    let unturned = orientation(aim, 0.0) * DVec3::X;
+    let across = right - aim * aim.dot(right);
+    aim.dot(unturned.cross(across)).atan2(unturned.dot(across)).to_degrees()
 }
 
 fn names(lights: &[ImportedLight]) -> String {
@@ -95,8 +104,11 @@ fn kind_of(
             );
             return None;
         }
-        LightKind::Profile { uri, factor } => {
-            return profile(&light.name, label, uri, *factor, file, wanted, context);
+        LightKind::Profile { file: stored, factor } => {
+            if light.mirrored {
+                context.note(format!("{label}: its node is mirrored, the photometric file is not"));
+            }
+            return profile(&light.name, label, stored, *factor, file, wanted, context);
         }
         LightKind::Point { cd } => {
             let flux = Lumens(4.0 * std::f64::consts::PI * cd);
@@ -133,6 +145,20 @@ mod tests {
     use std::f64::consts::{PI, TAU};
 
     use super::*;
+
+    /// Catches: a profile turned the wrong way round its beam.
+    #[test]
+    fn the_zero_plane_lies_towards_the_nodes_x() {
+        for (aim, right) in [
+            (DVec3::NEG_Z, DVec3::Y),
+            (DVec3::NEG_Z, DVec3::NEG_X),
+            (DVec3::X, DVec3::new(0.0, 0.6, 0.8)),
+            (DVec3::Z, DVec3::new(-0.8, 0.6, 0.0)),
+        ] {
+            let found = orientation(aim, turn_deg(aim, right)) * DVec3::X;
+            assert!((found - right).length() < 1e-12, "{aim} {right}: {found}");
+        }
+    }
 
     /// Catches: full angles for half-angles, the square of the fall-off forgotten. Closed form with
     /// u = cosγ: Φ = 2π I0 [1 − cos i + (cos i − cos o)/3].

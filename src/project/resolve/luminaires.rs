@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use super::draft::RoomFactors;
 use super::rooms::check_factor;
+use crate::geometry::gltf::ProfileFile;
 use crate::luminaire::{LuminaireType, Maintenance};
 use crate::photometry::{self, IntensityDistribution, Opening};
-use crate::project::choices::{Factor, OpeningChoice};
+use crate::project::choices::{EmergencyChoice, Factor, OpeningChoice};
 use crate::project::context::{Context, SMALL_FILE};
 use crate::project::diagnostics::Diagnostic;
 use crate::project::schema::{At, File, LuminaireSection};
@@ -68,6 +69,7 @@ impl Kind {
             name: name.to_owned(),
             flux_lm: source.distribution.flux().0,
             maintenance: Maintenance::NEW,
+            emergency: None,
             declared_ra: source.declared_ra,
             description: source.description,
             distribution: source.distribution,
@@ -91,29 +93,28 @@ impl Kind {
 pub fn profile(
     name: &str,
     label: &str,
-    uri: &str,
+    stored: &ProfileFile,
     factor: f64,
     cad: &At<String>,
     wanted: &At<bool>,
     context: &mut Context,
 ) -> Option<Kind> {
-    let folder = cad.get_ref().rfind(['/', '\\']).map_or("", |at| &cad.get_ref()[..=at]);
-    let file = format!("{folder}{uri}");
-    let bytes = match context.read_path(&file, SMALL_FILE) {
-        Ok(bytes) => bytes,
-        Err((message, hint)) => {
-            context.error(&wanted.span(), format!("{label}: {message}"), hint);
-            return None;
+    let (file, bytes) = match stored {
+        ProfileFile::Bytes(bytes) => (format!("{}#{name}", cad.get_ref()), bytes.clone()),
+        ProfileFile::Path(path) => {
+            let folder = cad.get_ref().rfind(['/', '\\']).map_or("", |at| &cad.get_ref()[..=at]);
+            let file = format!("{folder}{path}");
+            match context.read_path(&file, SMALL_FILE) {
+                Ok(bytes) => (file, bytes),
+                Err((message, hint)) => {
+                    context.error(&wanted.span(), format!("{label}: {message}"), hint);
+                    return None;
+                }
+            }
         }
     };
     let mut source = from_bytes(&bytes, &file, context)?;
     source.distribution = source.distribution.scaled(factor);
-    if !source.distribution.is_rotationally_symmetric() {
-        context.note(format!(
-            "{label}: how its planes are turned about the beam is not settled by gershun; the 0° plane lies where \
-             `aim` without `rotate` puts it"
-        ));
-    }
     if !(source.distribution.flux().0 > 0.0) {
         context.note(format!("{label} is dark"));
         return None;
@@ -178,10 +179,16 @@ fn luminaire_type(
         let factor = flux.get_ref() / source.distribution.flux().0;
         source.distribution = source.distribution.scaled(factor);
     }
+    let flux_lm = source.distribution.flux().0;
+    let emergency = match &section.emergency {
+        Some(choice) => Some(emergency(choice, flux_lm, context)?),
+        None => None,
+    };
     Some(LuminaireType {
         name: name.get_ref().clone(),
-        flux_lm: source.distribution.flux().0,
+        flux_lm,
         maintenance,
+        emergency,
         declared_ra: section.ra.as_ref().map(|ra| *ra.get_ref()).or(source.declared_ra),
         description: source.description,
         distribution: source.distribution,
@@ -306,6 +313,24 @@ fn opening(area: &At<OpeningChoice>, context: &mut Context) -> Result<Option<Ope
         }
         OpeningChoice::Disc(diameter_m) => Some(Opening::Disc { diameter_m, height_m: 0.0 }),
     })
+}
+
+/// Share of the flux that is left in an emergency.
+fn emergency(choice: &At<EmergencyChoice>, flux_lm: f64, context: &mut Context) -> Option<f64> {
+    let share = match *choice.get_ref() {
+        EmergencyChoice::Share(share) => share,
+        EmergencyChoice::Flux(lm) => lm / flux_lm,
+    };
+    if share > 0.0 && share <= 1.0 {
+        return Some(share);
+    }
+    let message = format!("the emergency output is {share:.3} of the flux of {flux_lm:.0} lm");
+    context.error(
+        &choice.span(),
+        message,
+        "a share above 0 and at most 1, or { flux = lm }; leave it out where it is dark",
+    );
+    None
 }
 
 fn maintenance(factor: &At<Factor>, context: &mut Context) -> Option<Maintenance> {

@@ -8,9 +8,9 @@ use crate::norm::{self, Standard};
 use crate::project::choices::GoalChoice;
 use crate::project::context::Context;
 use crate::project::diagnostics::{Diagnostic, suggestion};
-use crate::project::schema::{At, File, ProjectSection, RequireSection};
+use crate::project::schema::{At, File, ModifiedSection, ProjectSection, RequireSection};
 use crate::project::{
-    Accuracy, Compare, CustomRequirement, CustomSubject, Declared, Goal, Info, LightScene, Norm,
+    Accuracy, Compare, CustomRequirement, CustomSubject, Declared, Goal, Info, LightScene, Modification, Norm,
 };
 use crate::quantity::{Quantity, SPELLINGS, Statistic};
 
@@ -118,36 +118,49 @@ pub fn check_rows(file: &File, norm: Option<&Norm>, context: &mut Context) {
     }
 }
 
-/// A modified illuminance needs a reason, a row, and a value to go to.
+/// Modified illuminances of rooms must be possible.
 pub fn check_modified(file: &File, norm: Option<&Norm>, context: &mut Context) {
     for room in &file.rooms {
-        let Some(modified) = &room.get_ref().modified else { continue };
-        let reason = &modified.get_ref().reason;
-        if reason.get_ref().trim().is_empty() {
-            let hint = "reason = \"visual tasks are critical\"";
-            context.error(&reason.span(), "a modified illuminance needs its reason", hint);
-        }
-        let span = modified.get_ref().steps.as_ref().map_or(modified.span(), At::span);
-        let Some(norm) = norm else {
-            if file.norm.is_none() && !file.may_have_lost("norm", "") {
-                let hint = "[norm] standard = \"en-12464-1-2021\"";
-                context.error(&modified.span(), "a modified illuminance needs a norm", hint);
-            }
-            continue;
-        };
-        let row = room.get_ref().row.as_ref().map(At::get_ref).or(norm.row.as_ref());
-        let Some(row) = row else {
-            let message = "a modified illuminance needs a row to modify";
-            context.error(&modified.span(), message, "give the room a row");
-            continue;
-        };
-        // A row that does not exist was reported already.
-        let Some(row) = norm.standard.row(row) else { continue };
-        let steps = modified.get_ref().steps.as_ref().map(|steps| *steps.get_ref());
-        if let Err(why) = norm.standard.modified_illuminance(row, steps) {
-            context.error(&span, format!("no modified illuminance: {why}"), "");
+        if let Some(modified) = &room.get_ref().modified {
+            modification(modified, room.get_ref().row.as_ref().map(At::get_ref), file, norm, context);
         }
     }
+}
+
+/// A modified illuminance; it needs a reason, a row, and a value to go to.
+pub fn modification(
+    modified: &At<ModifiedSection>,
+    row: Option<&String>,
+    file: &File,
+    norm: Option<&Norm>,
+    context: &mut Context,
+) -> Option<Modification> {
+    let reason = &modified.get_ref().reason;
+    if reason.get_ref().trim().is_empty() {
+        let hint = "reason = \"visual tasks are critical\"";
+        context.error(&reason.span(), "a modified illuminance needs its reason", hint);
+    }
+    let span = modified.get_ref().steps.as_ref().map_or(modified.span(), At::span);
+    let Some(norm) = norm else {
+        if file.norm.is_none() && !file.may_have_lost("norm", "") {
+            let hint = "[norm] standard = \"en-12464-1-2021\"";
+            context.error(&modified.span(), "a modified illuminance needs a norm", hint);
+        }
+        return None;
+    };
+    let Some(row) = row.or(norm.row.as_ref()) else {
+        let message = "a modified illuminance needs a row to modify";
+        context.error(&modified.span(), message, "give the room or the area a row");
+        return None;
+    };
+    // A row that does not exist was reported already.
+    let row = norm.standard.row(row)?;
+    let steps = modified.get_ref().steps.as_ref().map(|steps| *steps.get_ref());
+    if let Err(why) = norm.standard.modified_illuminance(row, steps) {
+        context.error(&span, format!("no modified illuminance: {why}"), "");
+        return None;
+    }
+    Some(Modification { steps, reason: reason.get_ref().trim().to_owned() })
 }
 
 /// Light scenes; emitting materials are groups too, by their names.

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::super::ReportError;
 use super::super::number::{figures, fixed};
-use super::super::words::Lang;
+use super::super::words::{Lang, lamp_word};
+use super::super::xml::put;
 use crate::estimate::{Estimate, quantile};
 use crate::lamp::c_deg;
 use crate::solve::far_field::FarField;
@@ -36,35 +37,38 @@ struct Listing {
     nodes: Vec<Node>,
 }
 
-/// A sentence per figure.
-pub fn text(field: &FarField) -> String {
-    let (lang, escaped) = (Lang::En, field.escaped_lm);
+/// A line per figure.
+pub fn text(field: &FarField, lang: Lang) -> String {
+    let say = |english: &'static str| lamp_word(lang, english);
     let percent = |lm: f64| format!("{} %", fixed(lang, 100.0 * lm / field.emitted_lm, 2));
-    let with_half =
-        |value: Estimate| format!("{} ± {} lm", figures(lang, value.value, 5), figures(lang, half(value), 2));
-    let mut text = format!(
-        "  emitted       {} lm\n  leaves        {} ({} ± {})\n  table         {}, interpolated\n  exactness     \
-         standard error {} of the largest intensity (rms over {} directions, {} blocks)\n",
-        figures(lang, field.emitted_lm, 5),
-        with_half(escaped),
-        percent(escaped.value),
-        percent(half(escaped)),
-        with_half(field.table_lm),
-        percent_of(field.error()),
-        field.cd.iter().map(Vec::len).sum::<usize>(),
-        escaped.n,
+    let lumens = |value: Estimate| {
+        format!("{} ± {} {}", figures(lang, value.value, 5), figures(lang, half(value), 2), say("lm"))
+    };
+    let mut text = String::new();
+    let mut row = |name: &str, value: String| put(&mut text, format_args!("  {name:<14}{value}\n"));
+    let escaped = field.escaped_lm;
+    row(say("emitted"), format!("{} {}", figures(lang, field.emitted_lm, 5), say("lm")));
+    let share = format!("({} ± {})", percent(escaped.value), percent(half(escaped)));
+    row(say("leaves"), format!("{} {share}", lumens(escaped)));
+    row(say("table"), format!("{}, {}", lumens(field.table_lm), say("interpolated")));
+    row(
+        say("exactness"),
+        format!(
+            "{} {} % {} ({}: {}, {}: {})",
+            say("standard error"),
+            figures(lang, 100.0 * field.error(), 2),
+            say("of the largest intensity, rms"),
+            say("directions"),
+            field.cd.iter().map(Vec::len).sum::<usize>(),
+            say("blocks"),
+            escaped.n
+        ),
     );
     if field.mirrored_lm.value > 0.0 {
-        text.push_str(&format!(
-            "  blurred       {} leave by a mirror: their directions are blurred by one step of the table\n",
-            percent(field.mirrored_lm.value)
-        ));
+        let told = say("leave by a mirror: their directions are blurred by one step of the table");
+        row(say("blurred"), format!("{} {told}", percent(field.mirrored_lm.value)));
     }
     text
-}
-
-fn percent_of(part: f64) -> String {
-    format!("{} %", figures(Lang::En, 100.0 * part, 2))
 }
 
 /// Half of the 95 % interval.

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::super::ReportError;
-use super::super::words::{Lang, lamp_word};
+use super::super::words::{Lang, found, lamp_word, rule_words};
 use super::super::xml::{printable, put};
 use super::Batch;
 use super::json::Found;
@@ -66,8 +66,8 @@ pub(super) fn one(file: &str, finding: &Finding, severity: Severity, lang: Lang)
         printable(file),
         severity_word(severity, lang),
         finding.code,
-        printable(&finding.message),
-        printable(&finding.consequence)
+        printable(&found(lang, &finding.message)),
+        printable(&found(lang, &finding.consequence))
     )
 }
 
@@ -139,9 +139,10 @@ fn uri(file: &str) -> String {
 }
 
 /// The text of `gershun explain`; `None` for an unknown code.
-pub fn explanation(code: &str) -> Option<String> {
+pub fn explanation(code: &str, lang: Lang) -> Option<String> {
     let rule = crate::lamp::rule(code)?;
-    Some(format!("{} ({})\n{}\n\n{}\n", rule.code, rule.severity.key(), rule.meaning, rule.explanation))
+    let (meaning, explanation) = rule_words(lang, rule);
+    Some(format!("{} ({})\n{meaning}\n\n{explanation}\n", rule.code, severity_word(rule.severity, lang)))
 }
 
 #[cfg(test)]
@@ -178,8 +179,9 @@ mod tests {
     #[test]
     fn codes_are_explained() {
         assert!(
-            explanation("flux-mismatch").is_some_and(|text| text.starts_with("flux-mismatch (warning)\n"))
+            explanation("flux-mismatch", Lang::En)
+                .is_some_and(|text| text.starts_with("flux-mismatch (warning)\n"))
         );
-        assert!(explanation("nonsense").is_none());
+        assert!(explanation("nonsense", Lang::En).is_none());
     }
 }

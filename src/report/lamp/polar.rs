@@ -3,7 +3,7 @@
 
 use super::super::canvas::{Anchor, Canvas, Lettering, Px, Rgb, Weight};
 use super::super::number::{figures, fixed};
-use super::super::words::Lang;
+use super::super::words::{Lang, lamp_word};
 use super::format_name;
 use crate::lamp::{Lamp, azimuth_deg, beam};
 use crate::photometry::IntensityDistribution;
@@ -19,13 +19,14 @@ const RULE: Rgb = [205, 205, 205];
 const STEP_DEG: f64 = 0.5;
 
 /// The diagram of a photometric file as SVG.
-pub fn polar(lamp: &Lamp) -> String {
+pub fn polar(lamp: &Lamp, lang: Lang) -> String {
     let about = format!("{} · {}", format_name(lamp.photometry.format), lamp.photometry.description);
-    diagram(file_name(&lamp.file), &about, &lamp.photometry.distribution)
+    diagram(file_name(&lamp.file), &about, &lamp.photometry.distribution, lang)
 }
 
 /// The diagram of an intensity distribution that shines at all.
-pub fn diagram(name: &str, about: &str, distribution: &IntensityDistribution) -> String {
+pub fn diagram(name: &str, about: &str, distribution: &IntensityDistribution, lang: Lang) -> String {
+    let say = |english: &'static str| lamp_word(lang, english);
     let (peak_cd, flux_lm) = (distribution.max_intensity().0, distribution.flux().0);
     let ring_cd = ring_step(peak_cd);
     let rings = (peak_cd / ring_cd - 1e-9).ceil().max(1.0);
@@ -34,21 +35,21 @@ pub fn diagram(name: &str, about: &str, distribution: &IntensityDistribution) ->
     text(&mut canvas, [20.0, 26.0], name, 15.0, Anchor::Start, Weight::Bold, INK);
     let sub: String = about.chars().take(78).collect();
     text(&mut canvas, [20.0, 46.0], &sub, 11.0, Anchor::Start, Weight::Normal, INK);
-    grid(&mut canvas, rings as usize, ring_cd, px_per_cd, flux_lm);
+    grid(&mut canvas, rings as usize, ring_cd, px_per_cd, flux_lm, lang);
     for (c_deg, colour, width) in [(0.0, C0, 2.2), (90.0, C90, 1.4)] {
         canvas.line(&curve(distribution, c_deg, px_per_cd), colour, width);
     }
     let y = SIZE[1] - 74.0;
     for (k, (c_deg, colour, label)) in
-        [(0.0, C0, "C0–C180, across the length"), (90.0, C90, "C90–C270, along the length")]
+        [(0.0, C0, say("C0–C180, across the length")), (90.0, C90, say("C90–C270, along the length"))]
             .into_iter()
             .enumerate()
     {
         let row = y + 20.0 * k as f64;
         canvas.line(&[[20.0, row], [48.0, row]], colour, if k == 0 { 2.2 } else { 1.4 });
         let angle = beam::angle_deg(distribution, azimuth_deg(c_deg), beam::BEAM).map_or_else(
-            |_| "no beam angle".to_owned(),
-            |deg| format!("beam (50 %) {}°", fixed(Lang::En, deg, 1)),
+            |_| say("no beam angle").to_owned(),
+            |deg| format!("{} {}°", say("beam (50 %)"), fixed(lang, deg, 1)),
         );
         text(
             &mut canvas,
@@ -61,13 +62,17 @@ pub fn diagram(name: &str, about: &str, distribution: &IntensityDistribution) ->
         );
     }
     let total = format!(
-        "I_max {} cd = {} cd/klm of the luminaire's {} lm",
-        figures(Lang::En, peak_cd, 4),
-        figures(Lang::En, 1000.0 * peak_cd / flux_lm, 3),
-        fixed(Lang::En, flux_lm, 0)
+        "I_max {} {} = {} {}, {} {} {}",
+        figures(lang, peak_cd, 4),
+        say("cd"),
+        figures(lang, 1000.0 * peak_cd / flux_lm, 3),
+        say("cd/klm"),
+        say("for the luminaire's"),
+        fixed(lang, flux_lm, 0),
+        say("lm")
     );
     text(&mut canvas, [20.0, y + 42.0], &total, 12.0, Anchor::Start, Weight::Normal, INK);
-    canvas.finish(&format!("Luminous intensity of {name}"))
+    canvas.finish(&format!("{}: {name}", say("Luminous intensity")))
 }
 
 /// 1, 2 or 5 times a power of ten, for three to six rings.
@@ -83,7 +88,8 @@ fn place(angle_deg: f64, radius_px: f64) -> Px {
     [CENTRE[0] + radius_px * sin, CENTRE[1] + radius_px * cos]
 }
 
-fn grid(canvas: &mut Canvas, rings: usize, ring_cd: f64, px_per_cd: f64, flux_lm: f64) {
+fn grid(canvas: &mut Canvas, rings: usize, ring_cd: f64, px_per_cd: f64, flux_lm: f64, lang: Lang) {
+    let say = |english: &'static str| lamp_word(lang, english);
     let circle = |radius: f64| (0..=120).map(|k| place(3.0 * f64::from(k), radius)).collect::<Vec<Px>>();
     let circles: Vec<Vec<Px>> = (1..=rings).map(|k| circle(k as f64 * ring_cd * px_per_cd)).collect();
     let spokes: Vec<Vec<Px>> = (0..24).map(|k| vec![CENTRE, place(15.0 * f64::from(k), RADIUS)]).collect();
@@ -103,22 +109,22 @@ fn grid(canvas: &mut Canvas, rings: usize, ring_cd: f64, px_per_cd: f64, flux_lm
     }
     for k in 1..=rings {
         let cd = k as f64 * ring_cd;
-        let per_klm = figures(Lang::En, 1000.0 * cd / flux_lm, 3);
-        let label = format!("{} cd ({per_klm} cd/klm)", figures(Lang::En, cd, 3));
+        let per_klm = figures(lang, 1000.0 * cd / flux_lm, 3);
+        let label = format!("{} {} ({per_klm} {})", figures(lang, cd, 3), say("cd"), say("cd/klm"));
         // Along 105°, where few luminaires shine.
         let at = place(105.0, cd * px_per_cd);
         if k == rings {
             text(
                 canvas,
                 [SIZE[0] - 20.0, 70.0],
-                &format!("outer ring {label}"),
+                &format!("{} {label}", say("outer ring")),
                 11.0,
                 Anchor::End,
                 Weight::Normal,
                 INK,
             );
         }
-        text(canvas, at, &figures(Lang::En, cd, 3), 10.0, Anchor::Middle, Weight::Normal, INK);
+        text(canvas, at, &figures(lang, cd, 3), 10.0, Anchor::Middle, Weight::Normal, INK);
     }
 }
 
@@ -156,12 +162,14 @@ mod tests {
     fn drawing_is_well_formed() {
         let file = "IESNA:LM-63-2002\n[MANUFAC] A<b & co\nTILT=NONE\n1 -1 1 3 1 1 2 -0.2 -0.2 0\n1 1 10\n0 45 90\n0\n400 200 0\n";
         let lamps = read(file.as_bytes(), "secret/folder/a.ies").expect("sound");
-        let svg = polar(&lamps[0]);
+        let svg = polar(&lamps[0], Lang::En);
         roxmltree::Document::parse(&svg).expect("well-formed");
         for part in ["C0–C180", "C90–C270", "beam (50 %) 90.0°", "cd/klm", "400"] {
             assert!(svg.contains(part), "{part}");
         }
         assert!(!svg.contains("secret"));
+        let russian = polar(&lamps[0], Lang::Ru);
+        assert!(russian.contains("поперёк") && !russian.contains("along"), "{russian}");
     }
 
     /// Catches: too few or too many rings.

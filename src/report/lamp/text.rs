@@ -4,9 +4,10 @@
 use rayon::prelude::*;
 
 use super::super::number::{figures, fixed};
-use super::super::words::{Lang, lamp_word};
+use super::super::words::{Lang, found, lamp_word};
 use super::super::xml::{printable, put};
-use super::{Batch, format_name, lint};
+use super::opening::shown;
+use super::{Batch, decimal, format_name, lint};
 use crate::lamp::info::{Info, info};
 use crate::lamp::luminance::GAMMAS_DEG;
 use crate::lamp::outdoor::G_GAMMAS_DEG;
@@ -36,7 +37,7 @@ fn block(lamp: &Lamp, lang: Lang) -> String {
     row(say("output ratio"), page.output_ratio());
     row(say("power"), page.power());
     row("I_max", page.largest());
-    row(say("opening"), page.opening());
+    row(say("opening"), shown(info.opening, lang));
     row(say("symmetry"), page.symmetry().to_owned());
     row(say("beam (50 %)"), page.planes(&info.beam_deg));
     row(say("field (10 %)"), page.planes(&info.field_deg));
@@ -53,8 +54,8 @@ fn block(lamp: &Lamp, lang: Lang) -> String {
     for finding in &lamp.findings {
         let line = finding.line.map_or(String::new(), |line| format!("{} {line}, ", say("line")));
         let severity = lint::severity_word(rules::severity(finding.code), lang);
-        let (code, message) = (finding.code, printable(&finding.to_string()));
-        put(&mut text, format_args!("    {severity}[{code}]: {line}{message}\n"));
+        let told = [&finding.message, &finding.consequence].map(|text| printable(&found(lang, text)));
+        put(&mut text, format_args!("    {severity}[{}]: {line}{}\n", finding.code, told.join(": ")));
     }
     text
 }
@@ -68,6 +69,14 @@ struct Page<'a> {
 impl Page<'_> {
     fn say(&self, english: &'static str) -> &'static str {
         lamp_word(self.lang, english)
+    }
+
+    fn no_value(&self, undefined: &Undefined) -> String {
+        format!("— ({})", found(self.lang, &undefined.reason))
+    }
+
+    fn or_reason(&self, value: &Result<f64, Undefined>, show: impl Fn(f64) -> String) -> String {
+        value.as_ref().map_or_else(|undefined| self.no_value(undefined), |value| show(*value))
     }
 
     fn lumens(&self, lm: f64) -> String {
@@ -134,84 +143,11 @@ impl Page<'_> {
             figures(self.lang, peak.cd, 4),
             self.say("cd"),
             self.say("at"),
-            peak.c_deg,
-            peak.gamma_deg,
+            decimal(self.lang, peak.c_deg),
+            decimal(self.lang, peak.gamma_deg),
             figures(self.lang, 1000.0 * peak.cd / self.info.flux_integrated_lm, 3),
             self.say("cd/klm")
         )
-    }
-
-    fn opening(&self) -> String {
-        let size = |value: f64| fixed(self.lang, value, 3);
-        let sizes = |values: &[f64]| {
-            let sizes: Vec<String> = values.iter().map(|value| size(*value)).collect();
-            format!("{} {}", sizes.join(" × "), self.say("m"))
-        };
-        let height = |height_m: f64| {
-            let said = format!("{} {} {}", self.say(", luminous height"), size(height_m), self.say("m"));
-            if height_m > 0.0 { said } else { String::new() }
-        };
-        let plan = |length_m: f64, width_m: f64| {
-            format!("{} {}", sizes(&[length_m, width_m]), self.say("(length × width)"))
-        };
-        match self.info.opening {
-            Opening::Point => self.say("none: a point").to_owned(),
-            Opening::Rect { length_m, width_m, side_x_m, side_y_m } => {
-                let sides = if side_x_m > 0.0 || side_y_m > 0.0 {
-                    let (ends, long) = (self.say("(ends)"), self.say("(long sides)"));
-                    let [x, y] = [side_x_m, side_y_m].map(|side| sizes(&[side]));
-                    format!("{} {x} {ends}, {y} {long}", self.say(", luminous sides"))
-                } else {
-                    String::new()
-                };
-                format!("{} {}{sides}", self.say("rectangle"), plan(length_m, width_m))
-            }
-            Opening::Sided { length_m, width_m, sides_m: [c90, c180, c270, c0] } => format!(
-                "{} {}{} C0 {} · C90 {} · C180 {} · C270 {} {}",
-                self.say("rectangle"),
-                plan(length_m, width_m),
-                self.say(", luminous sides"),
-                size(c0),
-                size(c90),
-                size(c180),
-                size(c270),
-                self.say("m")
-            ),
-            Opening::Disc { diameter_m, height_m } => {
-                format!("{} ⌀ {}{}", self.say("disc"), sizes(&[diameter_m]), height(height_m))
-            }
-            Opening::Ellipse { length_m, width_m, height_m } => {
-                format!("{} {}{}", self.say("ellipse"), plan(length_m, width_m), height(height_m))
-            }
-            Opening::Ellipsoid { length_m, width_m, height_m } => {
-                if (length_m - width_m).abs().max((length_m - height_m).abs()) < 1e-9 {
-                    return format!("{} ⌀ {}", self.say("sphere"), sizes(&[length_m]));
-                }
-                let all = sizes(&[length_m, width_m, height_m]);
-                format!("{} {all} {}", self.say("ellipsoid"), self.say("(length × width × height)"))
-            }
-            Opening::Tube { length_m, width_m, height_m, across } => {
-                let way = if across { self.say("along C0–C180") } else { self.say("along C90–C270") };
-                let section = sizes(&[width_m, height_m]);
-                format!(
-                    "{}, {} {way}, ⌀ {section} {}",
-                    self.say("lying cylinder"),
-                    sizes(&[length_m]),
-                    self.say("(level × upright)")
-                )
-            }
-            Opening::Upright { width_m, height_m, across, round } => {
-                let shape = if round { self.say("ellipse") } else { self.say("rectangle") };
-                let faces = if across { "C0, C180" } else { "C90, C270" };
-                let all = sizes(&[width_m, height_m]);
-                format!(
-                    "{} {shape} {all} {} {} {faces}",
-                    self.say("upright"),
-                    self.say("(width × height)"),
-                    self.say("facing")
-                )
-            }
-        }
     }
 
     fn symmetry(&self) -> &'static str {
@@ -226,7 +162,7 @@ impl Page<'_> {
 
     fn planes(&self, [c0, c90]: &[Result<f64, Undefined>; 2]) -> String {
         let degrees = |value: &Result<f64, Undefined>| {
-            or_reason(value, |value| format!("{}°", fixed(self.lang, value, 1)))
+            self.or_reason(value, |value| format!("{}°", fixed(self.lang, value, 1)))
         };
         format!("C0–C180 {} · C90–C270 {}", degrees(c0), degrees(c90))
     }
@@ -234,15 +170,16 @@ impl Page<'_> {
     fn flux_code(&self) -> String {
         match &self.info.flux_code {
             Ok(code) => code.map(|part| fixed(self.lang, part, 0)).join(" "),
-            Err(undefined) => format!("— ({undefined})"),
+            Err(undefined) => self.no_value(undefined),
         }
     }
 
     fn spacing(&self) -> String {
-        let ratio = |value: &Result<f64, Undefined>| or_reason(value, |value| fixed(self.lang, value, 2));
+        let ratio =
+            |value: &Result<f64, Undefined>| self.or_reason(value, |value| fixed(self.lang, value, 2));
         let spacing = &self.info.spacing;
         if let (Err(undefined), Err(_)) = (&spacing.across, &spacing.along) {
-            return format!("— ({undefined})");
+            return self.no_value(undefined);
         }
         format!(
             "C0 {} · C90 {} · {} {}",
@@ -275,7 +212,7 @@ impl Page<'_> {
     fn glare_index(&self) -> String {
         let unverified = self.say("unverified");
         match &self.info.outdoor.glare_index {
-            Err(undefined) => format!("— ({undefined})"),
+            Err(undefined) => self.no_value(undefined),
             Ok((index, class)) => format!(
                 "D{class}, I·A^-0.5 {} 85° = {} {}/{} (EN 13201-2, {unverified})",
                 self.say("at"),
@@ -332,8 +269,4 @@ impl Page<'_> {
             put(text, format_args!("  {name:>9}{}\n", row.luminances.iter().map(cell).collect::<String>()));
         }
     }
-}
-
-fn or_reason(value: &Result<f64, Undefined>, show: impl Fn(f64) -> String) -> String {
-    value.as_ref().map_or_else(|undefined| format!("— ({undefined})"), |value| show(*value))
 }

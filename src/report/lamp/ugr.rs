@@ -5,29 +5,34 @@ use std::collections::BTreeSet;
 
 use super::super::ReportError;
 use super::super::number::fixed;
-use super::super::words::Lang;
+use super::super::words::{Lang, found, lamp_word};
 use super::super::xml::{printable, put};
+use super::decimal;
 use crate::glare::ugr_table::UgrTable;
 
 /// The table of one luminaire.
-pub fn text(file: &str, flux_lm: f64, table: &UgrTable) -> String {
+pub fn text(file: &str, flux_lm: f64, table: &UgrTable, lang: Lang) -> String {
+    let say = |english: &'static str| lamp_word(lang, english);
     let mut text = format!(
-        "{}\n  UGR by CIE 117 and CIE 190, for the file's {} lm, spacing to height {}\n",
+        "{}\n  {} {} {}, {} {}\n",
         printable(file),
-        fixed(Lang::En, flux_lm, 0),
-        table.shr
+        say("UGR by CIE 117 and CIE 190, for the file's"),
+        fixed(lang, flux_lm, 0),
+        say("lm"),
+        say("spacing to height"),
+        decimal(lang, table.shr)
     );
     let sets =
         |k: usize| table.reflectances.map(|set| format!("{:>6}", format!("{:.0}", 100.0 * set[k]))).concat();
-    for (k, surface) in ["ceiling", "walls", "floor"].iter().enumerate() {
+    for (k, surface) in [say("ceiling"), say("walls"), say("floor")].iter().enumerate() {
         put(&mut text, format_args!("  {surface:<10}{}  {}\n", sets(k), sets(k)));
     }
-    put(&mut text, format_args!("  {:<10}{:>30}  {:>30}\n", "X × Y", "crosswise", "endwise"));
+    put(&mut text, format_args!("  {:<10}{:>30}  {:>30}\n", "X × Y", say("crosswise"), say("endwise")));
     let mut reasons = BTreeSet::new();
     for (room, (x, y)) in table.rooms.iter().enumerate() {
         let mut cells = |row: &[Result<f64, _>; 5]| {
             let mut cell = |value: &Result<f64, crate::units::Undefined>| match value {
-                Ok(ugr) => format!("{:>6}", fixed(Lang::En, *ugr, 1)),
+                Ok(ugr) => format!("{:>6}", fixed(lang, *ugr, 1)),
                 Err(undefined) => {
                     reasons.insert(undefined.reason.clone());
                     format!("{:>6}", "—")
@@ -39,7 +44,7 @@ pub fn text(file: &str, flux_lm: f64, table: &UgrTable) -> String {
         put(&mut text, format_args!("  {:<10}{crosswise}  {endwise}\n", format!("{x}H × {y}H")));
     }
     for reason in reasons {
-        put(&mut text, format_args!("  — {reason}\n"));
+        put(&mut text, format_args!("  — {}\n", found(lang, &reason)));
     }
     text
 }

@@ -1,5 +1,5 @@
-//! Words of `lamp info` and `lamp lint` in Russian, by their English. The sentences of findings stay
-//! English, as the solver's do.
+//! Words of `gershun lamp` in Russian, by their English. The sentences of findings are in
+//! [`super::findings`].
 
 use super::Lang;
 
@@ -76,11 +76,70 @@ const TERMS: &[(&str, &str)] = &[
     ("note", "замечание"),
     ("warning", "предупреждение"),
     ("error", "ошибка"),
-    ("`gershun explain CODE` says more about a code", "`gershun explain КОД` объясняет код (по-английски)"),
+    ("`gershun explain CODE` says more about a code", "`gershun explain --lang ru КОД` объясняет код"),
     ("files", "файлов"),
     ("errors", "ошибок"),
     ("warnings", "предупреждений"),
     ("notes", "замечаний"),
+    // UGR tables.
+    ("UGR by CIE 117 and CIE 190, for the file's", "UGR по CIE 117 и CIE 190 для потока файла"),
+    ("spacing to height", "отношение шага к высоте"),
+    ("ceiling", "потолок"),
+    ("walls", "стены"),
+    ("floor", "пол"),
+    ("crosswise", "поперёк"),
+    ("endwise", "вдоль"),
+    // Far field.
+    ("emitted", "излучено"),
+    ("leaves", "выходит"),
+    ("table", "таблица"),
+    ("interpolated", "с интерполяцией"),
+    ("exactness", "точность"),
+    ("standard error", "стандартная погрешность"),
+    ("of the largest intensity, rms", "наибольшей силы света, среднеквадратично"),
+    ("directions", "направлений"),
+    ("blocks", "блоков"),
+    ("blurred", "размыто"),
+    (
+        "leave by a mirror: their directions are blurred by one step of the table",
+        "выходит через зеркало: направления размыты на один шаг таблицы",
+    ),
+    // Polar diagrams.
+    ("C0–C180, across the length", "C0–C180, поперёк длины"),
+    ("C90–C270, along the length", "C90–C270, вдоль длины"),
+    ("no beam angle", "угла пучка нет"),
+    ("for the luminaire's", "на поток светильника"),
+    ("outer ring", "внешнее кольцо"),
+    ("Luminous intensity", "Сила света"),
+    // Conversion.
+    ("dropped", "не перенесено"),
+    ("light output ratio", "КПД светильника"),
+    ("LM-63 has no place for it", "в LM-63 для него нет места"),
+    ("rated flux", "заявленный поток"),
+    ("the new file states", "новый файл заявляет"),
+    ("colour rendering", "цветопередача"),
+    ("luminous opening", "выходное отверстие"),
+    ("the new file holds", "в новом файле"),
+    ("so its luminance differs", "поэтому яркость отличается"),
+    ("name", "название"),
+    ("written as", "записано"),
+    ("not carried over if present", "не переносится, если есть"),
+    (
+        "size of the luminaire, numbers, date, lamp names, colour, further lamp sets, tilt, direct ratios",
+        "габариты светильника, номера, дата, названия ламп, цветность, другие комплекты ламп, наклон, коэффициенты использования",
+    ),
+    (
+        "size of the luminaire, numbers, date, lamp names, colour, further lamp sets, tilt; direct ratios become 0",
+        "габариты светильника, номера, дата, названия ламп, цветность, другие комплекты ламп, наклон; коэффициенты использования становятся 0",
+    ),
+    (
+        "spectra, colour other than R_a, equipment, custom data, comments",
+        "спектры, показатели цвета кроме R_a, сведения об оборудовании, свои данные изготовителя, примечания",
+    ),
+    (
+        "keywords other than the names, tilt data, lamp count; all factors become 1",
+        "ключевые слова кроме названий, данные о наклоне, количество ламп; все множители становятся 1",
+    ),
 ];
 
 /// An English term in a language.
@@ -100,7 +159,15 @@ mod tests {
     /// Catches: a term that was left in English, or that nobody says any more.
     #[test]
     fn every_term_is_said_and_none_is_missing() {
-        let sources = [include_str!("../lamp/text.rs"), include_str!("../lamp/lint.rs")];
+        let sources = [
+            include_str!("../lamp/convert.rs"),
+            include_str!("../lamp/far_field.rs"),
+            include_str!("../lamp/lint.rs"),
+            include_str!("../lamp/opening.rs"),
+            include_str!("../lamp/polar.rs"),
+            include_str!("../lamp/text.rs"),
+            include_str!("../lamp/ugr.rs"),
+        ];
         for source in sources {
             for call in source.split("say(\"").skip(1) {
                 let english = call.split('"').next().unwrap_or_default();
@@ -108,7 +175,7 @@ mod tests {
             }
         }
         for (english, russian) in TERMS {
-            let said = format!("say(\"{english}\"");
+            let said = format!("\"{english}\"");
             assert!(sources.iter().any(|source| source.contains(&said)), "nobody says {english}");
             assert!(!russian.is_empty());
         }

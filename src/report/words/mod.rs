@@ -1,16 +1,23 @@
 //! The words of every report. A word is looked up here and nowhere else, so a language is one
 //! column of [`table::TERMS`]; sentences of solver and loader are looked up by [`said`].
 
+mod faults;
+mod findings;
 mod lamp;
+mod rules;
 mod sentences;
 mod table;
 
+pub use findings::found;
 pub use lamp::lamp_word;
+pub use rules::rule_words;
 pub use sentences::said;
 pub use table::{TERMS, Term};
 
 use std::borrow::Cow;
 
+use crate::norm::{Light, State};
+use crate::outcome::Condition;
 use crate::outcome::Verdict;
 use crate::project::AreaKind;
 use crate::quantity::{Property, Quantity, Statistic, Unmeasured};
@@ -116,6 +123,7 @@ pub fn quantity(lang: Lang, quantity: Quantity) -> String {
             Quantity::Modelling => Term::Modelling,
             Quantity::Luminance { .. } => Term::Luminance,
             Quantity::Ugr => Term::Ugr,
+            Quantity::Intensity => Term::Intensity,
             Quantity::ColourRendering => Term::ColourRendering,
             Quantity::DiscomfortIndex => Term::DiscomfortIndex,
             Quantity::Declared(Property::Pulsation) => Term::Pulsation,
@@ -168,6 +176,7 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Quantity::Luminance { .. }
         | Quantity::Modelling
         | Quantity::Ugr
+        | Quantity::Intensity
         | Quantity::ColourRendering
         | Quantity::DiscomfortIndex
         | Quantity::Declared(_)
@@ -203,6 +212,7 @@ fn letter(quantity: Quantity, lang: Lang) -> String {
     match quantity {
         Quantity::Modelling => word(lang, Term::ModellingShort),
         Quantity::Ugr => "UGR",
+        Quantity::Intensity => "I",
         Quantity::ColourRendering => "R",
         Quantity::Luminance { .. } => "L",
         Quantity::DiscomfortIndex => "M",
@@ -227,6 +237,7 @@ fn direction(quantity: Quantity) -> Option<String> {
         | Quantity::Spherical
         | Quantity::Modelling
         | Quantity::Ugr
+        | Quantity::Intensity
         | Quantity::ColourRendering
         | Quantity::DiscomfortIndex
         | Quantity::Declared(_)
@@ -254,6 +265,15 @@ pub fn note(lang: Lang, note: &str) -> Cow<'_, str> {
         "declared, not computed" => word(lang, Term::DeclaredNotComputed).into(),
         "not computed" => word(lang, Term::NotComputed).into(),
         _ => said(lang, note),
+    }
+}
+
+/// Under which condition of the installation values are given.
+pub fn condition(lang: Lang, condition: Condition) -> Cow<'static, str> {
+    match (condition.state, condition.light) {
+        (State::Maintained, Light::All) => word(lang, Term::MaintainedValues).into(),
+        (State::Initial, Light::All) => word(lang, Term::InitialValues).into(),
+        (State::Emergency, _) | (_, Light::Direct) => said(lang, condition.note()),
     }
 }
 
@@ -296,7 +316,11 @@ mod tests {
     #[test]
     fn what_the_loop_and_the_judge_say_is_translated() {
         // Catches a reason reworded in lib.rs or assemble.rs that a Russian report would print in English.
-        let source = concat!(include_str!("../../lib.rs"), include_str!("../../assemble.rs"));
+        let source = concat!(
+            include_str!("../../lib.rs"),
+            include_str!("../../assemble/gauge.rs"),
+            include_str!("../../outcome/room.rs")
+        );
         for text in [
             "verdicts certain",
             "accuracy reached",

@@ -6,6 +6,7 @@
 use std::borrow::Cow;
 
 use super::Lang;
+use super::findings::finding;
 
 /// Patterns in English and Russian, more special ones first where two could match.
 pub const SENTENCES: &[(&str, &str)] = &[
@@ -124,6 +125,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "источников света: {} – файла {} не используются ({}); `lights = true` в [scene] делает их светильниками",
     ),
     (
+        "{}: its node is mirrored, the photometric file is not",
+        "{}: узел зеркально отражён, фотометрический файл – нет",
+    ),
+    (
         "{}: its range of {} m is ignored, light goes on",
         "{}: его дальность {} м не учитывается, свет идёт дальше",
     ),
@@ -150,6 +155,23 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "помещение «{}»: грани оболочки обращены наружу; обе стороны отражают одинаково",
     ),
     // Notes on glare.
+    ("initial, direct light only", "начальные значения, только прямой свет"),
+    ("initial", "начальные значения"),
+    ("maintained, direct light only", "эксплуатационные значения, только прямой свет"),
+    (
+        "emergency output, maintained, direct light only",
+        "аварийный режим, эксплуатационные значения, только прямой свет",
+    ),
+    ("emergency output, maintained", "аварийный режим, эксплуатационные значения"),
+    ("emergency output, initial", "аварийный режим, новая установка"),
+    (
+        "Room \"{}\" is dark in an emergency: none of its luminaires has an output then (`emergency`).",
+        "Помещение «{}» в аварийном режиме тёмное: ни у одного светильника не задан аварийный поток (`emergency`).",
+    ),
+    (
+        "a tenth of the task's maintained illuminance is required where that is more than 15 lx: ask for it with [[require]]",
+        "требуется десятая часть эксплуатационной освещённости рабочей области, если она больше 15 лк: задайте её в [[require]]",
+    ),
     ("{}; {}; L_b = E_ind/π", "{}; {}; L_b = E_отр/π"),
     ("far field of the opening's centre", "дальняя зона, центр отверстия"),
     ("visible part, mean luminance", "видимая часть, средняя яркость"),
@@ -292,7 +314,34 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "the norm judges UGR at observers and the project lists no viewpoint here",
         "норма оценивает UGR у наблюдателей, а в проекте здесь нет точек наблюдения",
     ),
+    (
+        "the project lists no task area of row {} in this room",
+        "в проекте для этого помещения не задана рабочая область строки {}",
+    ),
+    (
+        "the project lists no volume at {} m, the eye height of the row",
+        "в проекте не задан объём на высоте {} м – высоте глаз для этой строки",
+    ),
+    ("the project lists no {} round this task area", "вокруг этой рабочей области в проекте не задано: {}"),
+    (
+        "areas cover only {} % of the {} round this task area",
+        "области покрывают лишь {} % зоны вокруг этой рабочей области: {}",
+    ),
+    (
+        "volumes at {} m lie over only {} % of this task area",
+        "объёмы на высоте {} м лежат лишь над {} % этой рабочей области",
+    ),
+    ("areas cover only {} % of this wall", "области покрывают лишь {} % этой стены"),
+    ("areas cover only {} % of this ceiling", "области покрывают лишь {} % потолка"),
+    ("no area lies on this wall", "на этой стене нет области"),
+    ("no area lies on this ceiling", "на потолке нет области"),
     ("the project lists no {} in this room", "в проекте для этого помещения не задано: {}"),
+    ("task area", "рабочая область"),
+    ("surrounding area", "зона непосредственного окружения"),
+    ("background area", "зона периферии"),
+    ("wall", "стена"),
+    ("ceiling", "потолок"),
+    ("volume", "объём"),
     (
         "the row is for a vertical plane and this area is horizontal",
         "строка относится к вертикальной плоскости, а область горизонтальная",
@@ -316,14 +365,36 @@ pub const SENTENCES: &[(&str, &str)] = &[
 pub fn said(lang: Lang, text: &str) -> Cow<'_, str> {
     match lang {
         Lang::En => Cow::Borrowed(text),
-        Lang::Ru => russian(text).or_else(|| one_by_one(text)).map_or(Cow::Borrowed(text), Cow::Owned),
+        Lang::Ru => {
+            let known = look_up(&[SENTENCES], text).or_else(|| of_a_file(text));
+            known.map_or(Cow::Borrowed(text), Cow::Owned)
+        }
     }
 }
 
+/// `file:line: message: consequence`, a finding of a photometric file among the notes of loading.
+fn of_a_file(text: &str) -> Option<String> {
+    text.match_indices(": ").find_map(|(place, _)| {
+        let told = &text[place + 2..];
+        told.match_indices(": ").find_map(|(end, _)| {
+            let [message, consequence] = [&told[..end], &told[end + 2..]].map(finding);
+            Some(format!("{}: {}: {}", &text[..place], message?, consequence?))
+        })
+    })
+}
+
+/// Patterns in English and in another language.
+pub(super) type Patterns = [(&'static str, &'static str)];
+
+/// A sentence, or a list of sentences, by tables of patterns; `None` where none is known.
+pub(super) fn look_up(tables: &[&Patterns], text: &str) -> Option<String> {
+    one(tables, text).or_else(|| one_by_one(tables, text))
+}
+
 /// A list of sentences, each looked up on its own; `None` where none is known.
-fn one_by_one(text: &str) -> Option<String> {
+fn one_by_one(tables: &[&Patterns], text: &str) -> Option<String> {
     let parts: Vec<&str> = text.split("; ").collect();
-    let found: Vec<Option<String>> = parts.iter().map(|part| russian(part)).collect();
+    let found: Vec<Option<String>> = parts.iter().map(|part| one(tables, part)).collect();
     if parts.len() < 2 || found.iter().all(Option::is_none) {
         return None;
     }
@@ -332,16 +403,18 @@ fn one_by_one(text: &str) -> Option<String> {
     Some(said.join("; "))
 }
 
-fn russian(text: &str) -> Option<String> {
-    SENTENCES.iter().find_map(|(english, russian)| {
+fn one(tables: &[&Patterns], text: &str) -> Option<String> {
+    tables.iter().copied().flatten().find_map(|(english, target)| {
         // A closing full stop belongs to the place where the sentence is printed.
         let stopped = english.strip_suffix('.').filter(|_| !text.ends_with('.'));
         let parts = captured(stopped.unwrap_or(english), text)?;
-        let target = if stopped.is_some() { russian.trim_end_matches('.') } else { russian };
+        let target = if stopped.is_some() { target.trim_end_matches('.') } else { target };
         let mut pieces = target.split("{}");
         let mut whole = pieces.next().unwrap_or_default().to_owned();
         for (part, piece) in parts.iter().zip(pieces) {
-            whole.push_str(&part_in_russian(part));
+            // What a file says is quoted as it is.
+            let quoted = whole.ends_with('«');
+            whole.push_str(&if quoted { (*part).to_owned() } else { translated(tables, part) });
             whole.push_str(piece);
         }
         Some(whole)
@@ -349,11 +422,12 @@ fn russian(text: &str) -> Option<String> {
 }
 
 /// Numbers get a decimal comma; a part that is itself a sentence is looked up.
-fn part_in_russian(part: &str) -> String {
-    if part.parse::<f64>().is_ok() {
+fn translated(tables: &[&Patterns], part: &str) -> String {
+    let bare = part.trim_start_matches('C').trim_end_matches('°');
+    if bare.parse::<f64>().is_ok() {
         return part.replace('.', ",");
     }
-    russian(part).or_else(|| one_by_one(part)).unwrap_or_else(|| part.to_owned())
+    look_up(tables, part).unwrap_or_else(|| part.to_owned())
 }
 
 /// What stands at each `{}` of the pattern; `None` if the text does not follow it.
@@ -398,6 +472,18 @@ mod tests {
                 "Luminous surfaces shine on both sides: up to 0.50 % of the value; the margin is 1.2 %"
             ),
             "Светящиеся поверхности излучают в обе стороны: до 0,50 % значения; запас 1,2 %"
+        );
+    }
+
+    /// Catches: findings of photometric files that stay English in a Russian report.
+    #[test]
+    fn findings_among_the_notes_are_translated() {
+        let note = "a.ldt:29: rated 3772 lm, integrates to 3598 lm: Ē is 4.6 % lower than the rated flux suggests; \
+                    set `flux` to choose";
+        let said = said(Lang::Ru, note);
+        assert!(
+            said.starts_with("a.ldt:29: заявлено 3772 лм") && said.contains(": Ē на 4,6 % ниже"),
+            "{said}"
         );
     }
 

@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::emitters::Emitters;
 use crate::rng::Rng;
+use crate::scene::BodiesMet;
 use crate::solve::Counts;
 
 /// Specular bounces after which a walk is cut and counted: only a cage of perfect mirrors gets here.
@@ -62,10 +63,14 @@ pub(super) fn follow(
     let (mut origin, mut direction) = (origin, direction);
     let (mut reflections, mut owned, mut before_m) = (0, true, 0.0);
     let lift = scene.tracer.offset_m();
+    let mut bodies = BodiesMet::default();
     for _ in 0..MOST_BOUNCES {
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
-        for luminaire in 0..scene.luminaires.len() {
+        for (luminaire, placed) in scene.luminaires.iter().enumerate() {
+            if bodies.shut(placed) {
+                continue;
+            }
             let met = emitters.opening_along(luminaire, origin, direction);
             if let Some((luminance, distance_m)) = met {
                 // A luminaire's own body does not hide it.
@@ -74,7 +79,6 @@ pub(super) fn follow(
                     continue;
                 }
                 let luminance = luminance * seen;
-                let placed = &scene.luminaires[luminaire];
                 let cos = placed.world_from_luminaire.z_axis.dot(direction).abs();
                 let (area_m2, sealed) = (placed.kind.opening.area_m2(), !placed.body.is_empty());
                 let distance_m = before_m + distance_m;
@@ -99,9 +103,11 @@ pub(super) fn follow(
             direction += 2.0 * cos * normal;
             origin = point + normal * lift;
             reflections += 1;
+            bodies.reflected(scene, hit.triangle);
             owned = reflections == 1 && emitters.imaged[hit.triangle as usize];
         } else if choice < reflected + passed {
             origin = point - normal * lift;
+            bodies.passed(scene, hit.triangle);
         } else {
             return None;
         }

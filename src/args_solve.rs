@@ -1,0 +1,38 @@
+//! The command line of `gershun solve`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Arguments of `solve`.
+#[derive(Args, Debug)]
+pub struct Solve {
+    /// project.toml or its folder
+    pub project: PathBuf,
+    /// Folder that takes field.safetensors [default: out/<project name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of all randomness [default: the project's, else 1]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Number of threads; it never changes a result [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Let the project read files outside its folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Help that follows the options.
+pub const EXAMPLES: &str =
+    "The field is the luminance of every patch of the surfaces for every channel (luminaire group or
+luminous material) at initial flux. It holds for all light scenes, cameras and viewpoints, also for
+those added later; another geometry, material or luminaire needs a new one. docs/field-file.md
+describes the file and reads it in Python.
+
+Examples:
+  gershun solve scenes/office
+  gershun view --field out/office scenes/office";

@@ -1,0 +1,232 @@
+//! A planned requirement → its value and joint interval, by what it is asked of: area, viewpoint, table
+//! method, declaration.
+
+use super::Context;
+use crate::glare::source::NO_SOURCE;
+use crate::luminaire::LuminaireType;
+use crate::measure::glare_sources::Convention;
+use crate::measure::{self, Gauged, area, intensity, room_ugr, view};
+use crate::outcome::{UgrTableOutcome, Verdict};
+use crate::plan::{PlannedRequirement, Subject};
+use crate::project::{Declared, Room};
+use crate::quantity::Property;
+use crate::scene::Channel;
+use crate::units::Undefined;
+
+/// Luminance in cd/m² up to which a shining surface (a screen, say) leaves the UGR table of a room valid;
+/// brighter ones would dazzle without the method's knowing. A convention of this program.
+const BRIGHT_SURFACE_CD_M2: f64 = 500.0;
+
+impl Context<'_> {
+    /// Value and joint interval, a note, and a verdict that does not come from comparison.
+    pub(super) fn gauge(
+        &self,
+        room: usize,
+        planned: &PlannedRequirement,
+        alpha: f64,
+    ) -> (Gauged, String, Option<Verdict>) {
+        let entry = &self.world.rooms[room];
+        match &planned.subject {
+            Subject::Area(place, quantity) => {
+                let asked = &self.plan.rooms[room].areas[*place].quantities[*quantity];
+                let blocks = self.blocks(asked, planned.light_scene, entry);
+                (area::gauge(&blocks, planned.statistic, alpha), self.condition().note().into(), None)
+            }
+            Subject::Viewpoint(viewpoint) => (
+                self.worst_view(room, *viewpoint, planned.light_scene, alpha),
+                Convention::default().words(),
+                None,
+            ),
+            Subject::OfTask(place, quantity, task, of) => {
+                let areas = &self.plan.rooms[room].areas;
+                let own = self.blocks(&areas[*place].quantities[*quantity], planned.light_scene, entry);
+                let task = self.blocks(&areas[*task].quantities[*of], planned.light_scene, entry);
+                (area::gauge_of_task(&own, &task, alpha), self.condition().note().into(), None)
+            }
+            Subject::UgrTable(shr) => {
+                let mut note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
+                for said in self.table_notes(room, *shr) {
+                    note = format!("{note}; {said}");
+                }
+                let value = self.worst_table(room, *shr, planned.light_scene);
+                (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
+            }
+            Subject::DiscomfortTable(shr) => {
+                let note = format!("M = 10^((UGR + 4.8)/16), UGR by the table method, SHR {shr}");
+                let value =
+                    self.worst_table(room, *shr, planned.light_scene).map(crate::glare::discomfort::index_m);
+                (value.map_or_else(Gauged::undefined, Gauged::exact), note, None)
+            }
+            Subject::ColourRendering => {
+                let all = entry
+                    .luminaires
+                    .iter()
+                    .map(|&l| self.declared(entry, l, |d| d.ra, |kind| kind.declared_ra));
+                declared(all, f64::min, "ra")
+            }
+            Subject::Declared(property) => {
+                let (of, key): (fn(&Declared) -> Option<f64>, _) = match property {
+                    Property::Pulsation => (|d| d.pulsation_percent, "flicker = { pulsation }"),
+                    Property::PstLm => (|d| d.pst_lm, "flicker = { pst_lm }"),
+                    Property::Svm => (|d| d.svm, "flicker = { svm }"),
+                };
+                declared(
+                    entry.luminaires.iter().map(|&l| self.declared(entry, l, of, |_| None)),
+                    f64::max,
+                    key,
+                )
+            }
+            Subject::Intensity { kind, heights_m, zone_deg } => {
+                let peak_cd = self.peak_intensity(room, planned.light_scene, kind, *heights_m, *zone_deg);
+                (
+                    peak_cd.map_or_else(Gauged::undefined, Gauged::exact),
+                    "emergency output, initial".into(),
+                    None,
+                )
+            }
+            Subject::Missing(reason) => (
+                Gauged::undefined(Undefined::because(reason.clone())),
+                String::new(),
+                Some(Verdict::NotAssessed),
+            ),
+        }
+    }
+
+    /// Largest emergency intensity among the luminaires of a type that hang in a class of heights, initial.
+    fn peak_intensity(
+        &self,
+        room: usize,
+        light_scene: usize,
+        kind: &str,
+        [from_m, to_m]: [f64; 2],
+        zone_deg: [f64; 2],
+    ) -> Result<f64, Undefined> {
+        let entry = &self.world.rooms[room];
+        let scene = &self.world.scene;
+        let light_scene = &self.project.light_scenes[light_scene];
+        let weights = measure::weights(self.world, light_scene, entry, false);
+        let hung = entry.luminaires.iter().map(|&l| (l, &scene.luminaires[l])).filter(|(_, luminaire)| {
+            let height_m = luminaire.position.z - entry.floor_m;
+            luminaire.kind.name == kind && height_m >= from_m && height_m < to_m
+        });
+        let peaks = hung.map(|(index, luminaire)| {
+            let share = luminaire.kind.emergency.unwrap_or(0.0) * weights[scene.channel_of[index]];
+            share * intensity::peak_cd(luminaire, zone_deg)
+        });
+        peaks.reduce(f64::max).ok_or_else(|| Undefined::because("the room has no luminaire"))
+    }
+
+    /// The worst table value of a room at a spacing-to-height ratio. The method knows luminaires only:
+    /// where other surfaces shine brightly it says nothing.
+    fn worst_table(&self, room: usize, shr: f64, light_scene: usize) -> Result<f64, Undefined> {
+        let weights = self.initial(light_scene, &self.world.rooms[room]);
+        let scene = &self.world.scene;
+        let bright = scene.channels.iter().zip(&weights).any(|(channel, weight)| match channel {
+            Channel::Surfaces { material } => {
+                weight * scene.materials[*material].bsdf.emitted() > BRIGHT_SURFACE_CD_M2
+            }
+            Channel::Luminaires { .. } => false,
+        });
+        if bright {
+            return Err(Undefined::because(
+                "table method not applicable: bright luminous surfaces shine in the room",
+            ));
+        }
+        room_ugr::worst(self.table(room, shr))
+    }
+
+    /// The table values of a room at a spacing-to-height ratio.
+    fn table(&self, room: usize, shr: f64) -> &[UgrTableOutcome] {
+        let of_ratio = self.tables[room].iter().find(|(ratio, _)| ratio.to_bits() == shr.to_bits());
+        of_ratio.map_or(&[], |(_, table)| table)
+    }
+
+    /// What had to be taken otherwise than it is, each once.
+    fn table_notes(&self, room: usize, shr: f64) -> Vec<&String> {
+        let mut notes: Vec<&String> = self.table(room, shr).iter().flat_map(|table| &table.notes).collect();
+        notes.sort();
+        notes.dedup();
+        notes
+    }
+
+    /// A property declared for a luminaire: under its type's name, under the room's, or in its file.
+    fn declared(
+        &self,
+        room: &Room,
+        luminaire: usize,
+        property: fn(&Declared) -> Option<f64>,
+        of_file: fn(&LuminaireType) -> Option<f64>,
+    ) -> Option<f64> {
+        let kind = &*self.world.scene.luminaires[luminaire].kind;
+        let of =
+            |subject: &str| self.project.declared.iter().find(|d| d.subject == subject).and_then(property);
+        // A type that hangs with the maintenance of several rooms is called "A (room)" from the second on.
+        let listed = kind.name.split_once(" (").and_then(|(listed, _)| of(listed));
+        of(&kind.name).or(listed).or_else(|| of(&room.name)).or(of_file(kind))
+    }
+
+    /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
+    /// A direction in which no source is visible is never the worst, unless it is so in all.
+    fn worst_view(&self, room: usize, viewpoint: usize, light_scene: usize, alpha: f64) -> Gauged {
+        let views: Vec<usize> = (0..self.plan.rooms[room].views.len())
+            .filter(|&index| self.plan.rooms[room].views[index].viewpoint == viewpoint)
+            .collect();
+        let each = alpha / views.len().max(1) as f64;
+        let (mut worst, mut dark): (Option<Gauged>, Option<Gauged>) = (None, None);
+        for &index in &views {
+            let gauged = self.glare(room, index, light_scene, each, &[]).ugr;
+            match &gauged.value {
+                Err(undefined) if undefined.reason == NO_SOURCE => {
+                    dark = Some(gauged);
+                    continue;
+                }
+                Err(_) => return gauged,
+                Ok(_) => {}
+            }
+            let value = gauged.value.clone().unwrap_or(f64::NAN);
+            worst = Some(match worst {
+                None => gauged,
+                Some(known) => {
+                    let (lo, hi) = (known.lo.max(gauged.lo), known.hi.max(gauged.hi));
+                    let greater = value > known.value.clone().unwrap_or(f64::NAN);
+                    Gauged { lo, hi, ..if greater { gauged } else { known } }
+                }
+            });
+        }
+        worst
+            .or(dark)
+            .unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
+    }
+
+    /// Glare of a planned view; `indices` are wanted beside UGR.
+    pub(super) fn glare(
+        &self,
+        room: usize,
+        index: usize,
+        light_scene: usize,
+        alpha: f64,
+        indices: &[&'static str],
+    ) -> view::Glare {
+        let planned = &self.plan.rooms[room].views[index];
+        let weights = self.initial(light_scene, &self.world.rooms[room]);
+        let sighted = &self.seen[room][index];
+        let convention = Convention::default();
+        let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
+        let asked = view::Asked { gaze: planned.direction, indices, convention };
+        view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
+    }
+}
+
+/// The worst of what is declared for a room's luminaires; nothing is declared if one of them lacks it.
+fn declared(
+    of_luminaires: impl Iterator<Item = Option<f64>>,
+    worse: fn(f64, f64) -> f64,
+    key: &str,
+) -> (Gauged, String, Option<Verdict>) {
+    let all = of_luminaires.collect::<Option<Vec<f64>>>();
+    if let Some(worst) = all.and_then(|all| all.into_iter().reduce(worse)) {
+        return (Gauged::exact(worst), "declared, not computed".into(), Some(Verdict::Declared));
+    }
+    let reason = Undefined::because(format!("not declared for every luminaire type ([declared] {key})"));
+    (Gauged::undefined(reason), "not computed".into(), Some(Verdict::NotAssessed))
+}

@@ -1,0 +1,85 @@
+//! An adaptive mesh for the field: patches over which direct light varies more than is good for them are
+//! split. A point source near a plane, or a hall of which a corner is lit, needs small patches in one
+//! place; rooms that are lit evenly keep those they have. It decides noise, never a result.
+
+use std::f64::consts::FRAC_1_PI;
+
+use rayon::prelude::*;
+
+use crate::emitters::Emitters;
+use crate::field::{Patches, Place};
+
+/// A patch is split if the flux that its constant luminance puts in the wrong place exceeds this share
+/// of what a patch of the mesh reflects on the mean …
+const TOLERANCE: f64 = 0.25;
+/// … as long as there are no more than this many times the patches of the even mesh.
+const MOST: usize = 3;
+/// Places by which a patch that joins triangles is judged.
+const SAMPLES: usize = 8;
+
+/// Splits the patches of an even mesh.
+pub(super) fn refine(emitters: &Emitters, patches: &mut Patches) {
+    let even = patches.len();
+    let most = MOST * even;
+    let mut open: Vec<usize> = (0..even).collect();
+    let mut limit = None;
+    while !open.is_empty() && patches.len() < most {
+        let judged: Vec<(f64, f64)> =
+            open.par_iter().map(|&patch| misplaced(emitters, patches, patch)).collect();
+        let limit = *limit.get_or_insert_with(|| {
+            let reflected: f64 = judged.iter().map(|(_, reflected)| reflected).sum();
+            TOLERANCE * reflected / even as f64
+        });
+        let mut wanted: Vec<(f64, usize)> =
+            judged.iter().zip(&open).map(|((wrong, _), &patch)| (*wrong, patch)).collect();
+        wanted.retain(|(wrong, _)| *wrong > limit);
+        // The worst first; equals in the order of their numbers.
+        wanted.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        wanted.truncate((most - patches.len()).div_ceil(3));
+        let mesh = &emitters.scene.mesh;
+        open = wanted.iter().filter_map(|&(_, patch)| patches.split(mesh, patch)).flatten().collect();
+    }
+}
+
+/// Reflected flux of direct light, shadows apart, that a patch of constant luminance shows in the wrong
+/// place, and all of it: Σ A_i |L_i − L̄| and Σ A_i L_i over its samples and both sides, up to a factor π.
+fn misplaced(emitters: &Emitters, patches: &Patches, patch: usize) -> (f64, f64) {
+    let scene = emitters.scene;
+    let triangle = patches.triangle(2 * patch);
+    let (reflectance, transmittance) = scene.bsdf(triangle).diffuse();
+    if !(reflectance + transmittance > 0.0) {
+        return (0.0, 0.0);
+    }
+    let lit: Vec<([f64; 2], f64)> = patches
+        .samples(&scene.mesh, patch, SAMPLES)
+        .into_iter()
+        .map(|(place, share)| (lit_lx(emitters, triangle, place), share))
+        .collect();
+    let area_m2 = patches.area_m2(2 * patch);
+    let (mut wrong, mut all) = (0.0, 0.0);
+    for facing in 0..2 {
+        let luminance =
+            |lx: &[f64; 2]| FRAC_1_PI * (reflectance * lx[facing] + transmittance * lx[1 - facing]);
+        let mean: f64 = lit.iter().map(|(lx, share)| share * luminance(lx)).sum();
+        wrong += area_m2 * lit.iter().map(|(lx, share)| share * (luminance(lx) - mean).abs()).sum::<f64>();
+        all += area_m2 * mean;
+    }
+    (wrong, all)
+}
+
+/// Illuminance in front and behind from the centres of all openings, nothing standing between, lx.
+fn lit_lx(emitters: &Emitters, triangle: u32, place: Place) -> [f64; 2] {
+    let mut lit = [0.0; 2];
+    for source in emitters.sources.iter().filter(|source| source.mirror.is_none()) {
+        if !emitters.lights(source, triangle) {
+            continue;
+        }
+        let Some(arrival) = emitters.arrival_if(source, place.point, [0.5; 2], |_| true) else { continue };
+        let cos = place.normal.dot(arrival.direction);
+        let lx = arrival.normal_lx * cos.abs();
+        if lx.is_finite() {
+            lit[usize::from(cos < 0.0)] += lx;
+        }
+    }
+    lit
+}

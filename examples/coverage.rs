@@ -112,9 +112,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let pair = Pair::from_blocks(&points[0], &mean);
         let (lo, hi) = pair.ratio_interval(ALPHA);
         run.push((pair.ratio().value, lo, hi));
-        let sighted = sighted_from(prepared.emitters(), eye, seed);
-        let asked = view::Asked { gaze, row: 3, indices: &[], convention: Convention::default() };
-        let glare = view::glare(&answers, prepared.emitters(), &sighted, &asked, &light, ALPHA).ugr;
+        let sighted = sighted_from(prepared.emitters(), eye, seed, true);
+        let eye_light = view::EyeLight::of_row(&answers, 3, &light);
+        let asked = view::Asked { gaze, indices: &[], convention: Convention::default() };
+        let glare = view::glare(&eye_light, prepared.emitters(), &sighted, &asked, &light, ALPHA).ugr;
         run.push((glare.value.unwrap_or(f64::NAN), glare.lo, glare.hi));
         for row in [4, demand.rows() - 1] {
             let estimate = Estimate::from_blocks(&answers.total(row, &light));

@@ -128,6 +128,7 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         directions: vec![DVec3::X],
         indices: Vec::new(),
         light_scene: None,
+        highlights: true,
     }];
     Ok(project)
 }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use crate::args_lamp::LangChoice;
+
 /// Arguments of `glare`.
 #[derive(Args, Debug)]
 pub struct Glare {
@@ -16,12 +18,18 @@ pub struct Glare {
     /// Of a project: number of blocks
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=16_384))]
     pub blocks: u32,
+    /// Of a project: glare maps by blocks of unbiased answers in place of look-ups, which takes far longer
+    #[arg(long, requires = "project")]
+    pub unbiased: bool,
     /// Of a project: let it read files outside its folder
     #[arg(long)]
     pub allow_outside: bool,
     /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
     #[arg(long, value_name = "DIR", requires = "project")]
     pub out: Option<PathBuf>,
+    /// Of a project: language of the observers' cards
+    #[arg(long, value_enum, default_value_t = LangChoice::En)]
+    pub lang: LangChoice,
     /// Luminance images: Radiance HDR or OpenEXR
     #[arg(long, value_name = "FILE", required_unless_present = "project", num_args = 1..)]
     pub image: Vec<PathBuf>,

@@ -74,7 +74,7 @@ pub fn seen_by_views(plan: &Plan, emitters: &Emitters, seed: u64) -> Vec<Vec<Sig
         .map(|room| {
             room.views
                 .par_iter()
-                .map(|view| crate::emitters::sighted_from(emitters, view.eye, seed))
+                .map(|view| crate::emitters::sighted_from(emitters, view.eye, seed, view.highlights))
                 .collect()
         })
         .collect()

@@ -40,9 +40,9 @@ pub(crate) fn add(
         }
         let glowing = emitters.mirrors.len();
         note(
-            "Specular images of bright surfaces other than luminaires are part of the background, not glare sources.",
+            "Images of bright surfaces that do not emit, and images by more than one reflection, are part of the background, not glare sources.",
             format!(
-                "{glowing} specular planes; images of luminaires by one reflection in them do count as glare sources"
+                "{glowing} specular planes; images of luminaires and luminous surfaces by one reflection in them do count as glare sources"
             ),
             Some(0.0),
         );
@@ -61,7 +61,7 @@ pub(crate) fn add(
     }
     if lobes.count() > 0 {
         note(
-            "Highlights of luminaires on glossy surfaces are part of the background, not glare sources.",
+            "Highlights on glossy surfaces that are dull, curved or small, and those of luminous surfaces, are part of the background, not glare sources.",
             "observers' UGR reads low where one dazzles".into(),
             Some(0.0),
         );

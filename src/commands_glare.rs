@@ -9,9 +9,10 @@ use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
 use gershun::image::{LuminanceImage, ViewOptions, read};
-use gershun::observe::map::{Mapped, maps};
-use gershun::observe::{CONVENTIONS, observe};
+use gershun::observe::map::{MapMethod, Mapped, maps};
+use gershun::observe::{CONVENTIONS, Observed, observe, room_tables};
 use gershun::project::{LoadOptions, load, read_image};
+use gershun::report::Lang;
 use gershun::report::glare as report;
 use gershun::report::{make_folder, write_file};
 use gershun::units::Nits;
@@ -81,18 +82,21 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
     };
     let conventions = if glare.compare_methods { &CONVENTIONS[..] } else { &CONVENTIONS[..1] };
     let observed = observe(&project, conventions, glare.blocks as usize);
-    let maps = if glare.compare_methods { Vec::new() } else { maps(&project, glare.blocks as usize) };
+    let maps = if glare.compare_methods { Vec::new() } else { maps(&project, method(glare)) };
     if observed.is_empty() && maps.is_empty() {
         let hint = "hint: add [[viewpoint]] with eye and direction";
         return complain(&format!("the project has no viewpoint and no glare map\n  {hint}"));
     }
     if let Some(out) = &glare.out
-        && let Err(error) = write_maps(out, &maps)
+        && let Err(error) =
+            write_maps(out, &maps).and_then(|()| write_cards(out, &observed, glare.lang.lang()))
     {
         return complain(&error);
     }
     let text = match glare.format {
-        GlareFormat::Human if glare.compare_methods => Ok(report::compared_text(&observed)),
+        GlareFormat::Human if glare.compare_methods => {
+            Ok(report::compared_text(&observed) + &report::tables_text(&room_tables(&project)))
+        }
         GlareFormat::Human => {
             let maps: Vec<String> = maps.iter().map(report::map_text).collect();
             Ok(report::observed_text(&observed) + &maps.concat())
@@ -106,6 +110,11 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
     }
 }
 
+/// How maps are computed.
+fn method(glare: &Glare) -> MapMethod {
+    if glare.unbiased { MapMethod::Unbiased(glare.blocks as usize) } else { MapMethod::default() }
+}
+
 /// `glare_map_1.csv` and `.svg` for every map.
 fn write_maps(folder: &Path, maps: &[Mapped]) -> Result<(), String> {
     make_folder(folder).map_err(|error| error.to_string())?;
@@ -115,6 +124,16 @@ fn write_maps(folder: &Path, maps: &[Mapped]) -> Result<(), String> {
             let path = folder.join(format!("glare_map_{}.{extension}", number + 1));
             write_file(&path, text.as_bytes()).map_err(|error| error.to_string())?;
         }
+    }
+    Ok(())
+}
+
+/// `glare_card_1.svg` for every observer's worst direction.
+fn write_cards(folder: &Path, observed: &[Observed], lang: Lang) -> Result<(), String> {
+    let sheets = observed.iter().filter_map(|view| report::card_svg(view.sheet.as_ref()?, lang));
+    for (number, svg) in sheets.enumerate() {
+        let path = folder.join(format!("glare_card_{}.svg", number + 1));
+        write_file(&path, svg.as_bytes()).map_err(|error| error.to_string())?;
     }
     Ok(())
 }

@@ -7,6 +7,8 @@
 //! [`crate::photometry::Opening`]. A luminaire is also seen as its image in a planar mirror or pane.
 
 mod direct;
+mod glimpsed;
+mod glints;
 mod images;
 mod seen;
 mod shining;
@@ -19,8 +21,10 @@ use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, contour, unshadowed};
+pub use glimpsed::glimpsed_from;
+pub use glints::{Glint, GlintPiece, glints_from};
 pub use images::{Mirror, planes};
-pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_coarsely, sighted_from};
+pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
 
 /// All luminaires of a scene and their images.
@@ -32,6 +36,8 @@ pub struct Emitters<'s> {
     pub sources: Vec<Source>,
     /// Planar specular surfaces in which images are taken.
     pub mirrors: Vec<Mirror>,
+    /// Planes of glossy surfaces in which highlights are looked for.
+    pub glossy: Vec<Mirror>,
     /// For each triangle, whether it belongs to one of `mirrors`.
     pub imaged: Vec<bool>,
 }
@@ -124,7 +130,8 @@ impl<'s> Emitters<'s> {
                 sources.push(image);
             }
         }
-        Self { scene, sources, mirrors, imaged }
+        let glossy = glints::glossy(scene);
+        Self { scene, sources, mirrors, glossy, imaged }
     }
 
     /// The luminaire behind a source.
@@ -241,6 +248,20 @@ impl<'s> Emitters<'s> {
         }
     }
 
+    /// Share of the light of a place that reaches `point`, straight (0 behind anything opaque, pane
+    /// transmittances) or, where `place` is an image, by its plane.
+    fn clear(&self, point: DVec3, place: DVec3, mirror: Option<usize>) -> f64 {
+        let towards = place - point;
+        let distance_m = towards.length();
+        let direction = towards / distance_m;
+        let tracer = &self.scene.tracer;
+        let Some(mirror) = mirror else {
+            return tracer.transmittance(point, direction, distance_m - 2.0 * tracer.offset_m(), &[]);
+        };
+        let arrival = Arrival { direction, distance_m, normal_lx: 0.0, weight: 1.0 };
+        self.passed_by_mirror(&self.mirrors[mirror], tracer, point, &arrival, &[])
+    }
+
     fn passed_by_mirror(
         &self,
         mirror: &Mirror,
@@ -313,6 +334,24 @@ impl<'s> Emitters<'s> {
         } else {
             0.0
         }
+    }
+
+    /// Outline of an opening in the room, m; none of a point.
+    pub fn outline(&self, source: &Source) -> Vec<DVec3> {
+        let place = |corner: DVec3| source.position + source.world_from_luminaire * corner;
+        source.opening.outline().into_iter().map(place).collect()
+    }
+
+    /// Luminance I/A_p in cd/m² and solid angle A_p/d² in sr of an opening seen from `point` were it shifted
+    /// by `shift`, as if nothing stood between; `None` for points and from behind.
+    pub fn shifted(&self, source: &Source, point: DVec3, shift: DVec3) -> Option<[f64; 2]> {
+        let away = point - source.position - shift;
+        let distance_m = away.length();
+        let leaving = away / distance_m;
+        let seen_m2 = source.opening.projected_area_m2(source.world_from_luminaire.transpose() * leaving);
+        let intensity_cd = self.intensity_cd(source, leaving);
+        (seen_m2 > 0.0 && distance_m > 0.0)
+            .then(|| [intensity_cd / seen_m2, seen_m2 / (distance_m * distance_m)])
     }
 
     /// Density in 1/sr, seen from the receiving point, with which [`Emitters::arrival`] draws the

@@ -240,7 +240,17 @@ fn solve_world(
         };
         if let Some(stop) = stop {
             for (room, required) in required.into_iter().enumerate() {
-                let (outcome, values) = context.room(room);
+                let (mut outcome, values) = context.room(room);
+                let views = &plan.rooms[room].views;
+                observe::cards::add(
+                    &mut outcome.viewpoints,
+                    &prepared,
+                    project,
+                    world,
+                    room,
+                    views,
+                    &seen[room],
+                );
                 total.rooms.push(outcome);
                 total.values.extend(values);
                 total.requirements.extend(required);

@@ -2,18 +2,22 @@
 //! requirements are left out, so that only the light at the eyes is solved for.
 
 pub mod body;
+pub mod cards;
 pub mod map;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::emitters::sighted_from;
+use crate::emitters::{Sighted, sighted_from};
+use crate::glare::of_image::{Options, glare_of_image};
+use crate::glare::ugr::ugr;
+use crate::image::{Projection, View};
 use crate::measure::glare_sources::{Convention, SourceModel};
-use crate::measure::{Answers, view, weights};
-use crate::outcome::{IndexOutcome, Interval};
+use crate::measure::{Answers, room_ugr, view, weights};
+use crate::outcome::{IndexOutcome, Interval, UgrTableOutcome, ViewpointOutcome};
 use crate::project::{Project, World};
 use crate::query::{Demand, Kernel, Receiver};
-use crate::solve::{Effort, Method, Sheet, answer, prepare};
+use crate::solve::{Effort, Method, Prepared, Sheet, answer, prepare, thumbnail};
 use crate::units::Undefined;
 
 /// All conventions that a comparison shows: the default first.
@@ -55,6 +59,44 @@ pub struct Observed {
     pub e_v_lx: f64,
     /// Whether no other direction of this viewpoint has a higher UGR by this convention.
     pub worst: bool,
+    /// UGR of a picture of the view, where conventions are compared and a card is made.
+    pub image: Option<ImageReading>,
+    /// The view with its card: of the worst direction, or the only one, by the default convention.
+    pub sheet: Option<Box<ViewpointOutcome>>,
+}
+
+/// UGR as image-based programs find it, in a picture of the stored field.
+#[derive(Clone, Debug)]
+pub struct ImageReading {
+    /// UGR of the sources found in the picture.
+    pub ugr: Result<f64, Undefined>,
+    /// How many there are.
+    pub found: usize,
+    /// L_b of the picture, cd/m².
+    pub background_cd_m2: f64,
+    /// Edge of the picture, pixels.
+    pub pixels: usize,
+    /// How sources are found.
+    pub convention: String,
+}
+
+/// Edge of the pictures in which sources are searched.
+const IMAGE_PIXELS: usize = 500;
+
+/// UGR of every room of a project by the table method, for the two customary spacings.
+pub fn room_tables(project: &Project) -> Vec<(String, Vec<UgrTableOutcome>)> {
+    let mut tables = room_ugr::Tables::default();
+    let mut found = Vec::new();
+    for world in &project.worlds {
+        for room in &world.rooms {
+            let mut of_room = Vec::new();
+            for shr in [0.25, 1.0] {
+                of_room.extend(room_ugr::of_room(&mut tables, world, room, shr));
+            }
+            found.push((room.name.clone(), of_room));
+        }
+    }
+    found
 }
 
 /// All viewpoints of a project in all directions under their own light scene, from `blocks` blocks.
@@ -88,14 +130,16 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
         let viewpoint = &world.viewpoints[index];
         let light_scene = &project.light_scenes[viewpoint.light_scene.unwrap_or(0)];
         let weights = weights(world, light_scene, &world.rooms[viewpoint.room], false);
-        let sighted = sighted_from(prepared.emitters(), viewpoint.eye, seed);
+        let sighted = sighted_from(prepared.emitters(), viewpoint.eye, seed, viewpoint.highlights);
         let mut found = Vec::new();
         for &convention in conventions {
             let start = found.len();
+            let mut glares = Vec::with_capacity(viewpoint.directions.len());
             for (number, &gaze) in viewpoint.directions.iter().enumerate() {
                 let row = first_rows[index] + number;
-                let asked = view::Asked { gaze, row, indices: &viewpoint.indices, convention };
-                let glare = view::glare(&answers, prepared.emitters(), &sighted, &asked, &weights, alpha);
+                let light = view::EyeLight::of_row(&answers, row, &weights);
+                let asked = view::Asked { gaze, indices: &viewpoint.indices, convention };
+                let glare = view::glare(&light, prepared.emitters(), &sighted, &asked, &weights, alpha);
                 found.push(Observed {
                     viewpoint: viewpoint.name.clone(),
                     light_scene: light_scene.name.clone(),
@@ -108,14 +152,89 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
                     background_cd_m2: glare.background_cd_m2,
                     e_v_lx: glare.e_v_lx,
                     worst: false,
+                    sheet: None,
+                    image: None,
                 });
+                glares.push(glare);
             }
             mark_worst(&mut found[start..]);
+            for (view, number) in found[start..].iter_mut().zip(0..) {
+                if convention == Convention::default() && (view.worst || viewpoint.directions.len() == 1) {
+                    let gaze = viewpoint.directions[number];
+                    view.image =
+                        (conventions.len() > 1).then(|| of_image(&prepared, viewpoint.eye, gaze, &weights));
+                    view.sheet = Some(Box::new(sheet(
+                        view,
+                        gaze,
+                        &prepared,
+                        &sighted,
+                        &weights,
+                        glares.swap_remove(number),
+                    )));
+                    break;
+                }
+            }
         }
         found
     };
     let each: Vec<Vec<Observed>> = (0..world.viewpoints.len()).into_par_iter().map(one).collect();
     each.into_iter().flatten().collect()
+}
+
+fn of_image(prepared: &Prepared, eye: DVec3, gaze: DVec3, weights: &[f64]) -> ImageReading {
+    let options = Options::default();
+    let up = if gaze.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
+    let fisheye = Projection::AngularFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
+    let glare = View::new(fisheye, eye, gaze, up)
+        .ok()
+        .and_then(|view| thumbnail(prepared, &view, [IMAGE_PIXELS; 2], weights))
+        .ok_or_else(|| Undefined::because("there is no picture"))
+        .and_then(|image| glare_of_image(&image, None, &options));
+    match glare {
+        Ok(glare) => ImageReading {
+            ugr: ugr(&glare.sight.sources, glare.sight.background),
+            found: glare.sources.len(),
+            background_cd_m2: glare.sight.background.0,
+            pixels: IMAGE_PIXELS,
+            convention: glare.convention,
+        },
+        Err(undefined) => ImageReading {
+            ugr: Err(undefined),
+            found: 0,
+            background_cd_m2: 0.0,
+            pixels: IMAGE_PIXELS,
+            convention: String::new(),
+        },
+    }
+}
+
+/// A view with its card.
+fn sheet(
+    view: &Observed,
+    gaze: DVec3,
+    prepared: &Prepared,
+    sighted: &Sighted,
+    weights: &[f64],
+    glare: view::Glare,
+) -> ViewpointOutcome {
+    let mut outcome = ViewpointOutcome {
+        name: view.viewpoint.clone(),
+        light_scene: view.light_scene.clone(),
+        eye: view.eye,
+        direction: gaze,
+        azimuth_deg: view.azimuth_deg,
+        tilt_deg: view.tilt_deg,
+        ugr: view.ugr.clone(),
+        indices: view.indices.clone(),
+        convention: view.convention.words(),
+        background_cd_m2: view.background_cd_m2,
+        e_v_lx: view.e_v_lx,
+        sources: glare.sources,
+        notes: glare.notes,
+        card: None,
+    };
+    outcome.card = cards::card(prepared, sighted, &outcome, weights, view.convention);
+    outcome
 }
 
 fn mark_worst(views: &mut [Observed]) {

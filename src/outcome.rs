@@ -1,11 +1,13 @@
 //! What a run produced: measured values, verdicts, and everything a reader needs to trust them.
 //! The report writes this and nothing else; it holds no clock, host, thread count or absolute path.
 
+mod card;
 mod requirement;
 mod room;
 
 use serde::Serialize;
 
+pub use card::{Card, PlacedSource, Remedy, Shift};
 pub use requirement::*;
 pub use room::*;
 

@@ -101,6 +101,8 @@ pub struct PlannedView {
     pub indices: Vec<&'static str>,
     /// Light scene by which it is judged.
     pub light_scene: usize,
+    /// Whether highlights are sources.
+    pub highlights: bool,
 }
 
 /// A requirement and what it is measured on.
@@ -236,6 +238,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 row,
                 indices: viewpoint.indices.clone(),
                 light_scene: viewpoint.light_scene.unwrap_or(0),
+                highlights: viewpoint.highlights,
             });
         }
     }

@@ -7,9 +7,9 @@ use std::f64::consts::PI;
 
 use gershun::glare::position_index::{Position, PositionModel};
 use gershun::measure::glare_sources::{Convention, SourceModel};
-use gershun::observe::map::maps;
+use gershun::observe::map::{MapMethod, Mapped, maps};
 use gershun::observe::{CONVENTIONS, observe};
-use gershun::outcome::{Outcome, ViewpointOutcome};
+use gershun::outcome::{IndexOutcome, Outcome, Shift, ViewpointOutcome};
 use gershun::project::{LoadOptions, load};
 use gershun::solve::Effort;
 use glam::DVec3;
@@ -201,14 +201,26 @@ fn a_long_luminaire_converges_and_is_what_a_luminous_surface_of_its_kind_is() {
         by(SourceModel::Centre)
     );
     assert!((subdivided - integral).abs() < 0.02, "{subdivided} {integral}");
+    // A picture of the view holds the same source at Levin's P of its light's middle, which lies nearer to the
+    // eye than the opening's; its background is the view's and
+    // what pixels on the edge let slip under the threshold.
+    let image = found.iter().find_map(|view| view.image.clone()).expect("a picture");
+    let levin = Convention { sources: SourceModel::Visible, position: PositionModel::Levin };
+    let levin = found.iter().find(|view| view.convention == levin).expect("computed").ugr.clone();
+    let (levin, of_image) = (levin.expect("a value").value, image.ugr.clone().expect("a value"));
+    assert!(image.found == 1 && (of_image - levin).abs() < 1.6, "{image:?} {levin}");
+    let slipped = image.background_cd_m2 / l_b - 1.0;
+    assert!(slipped > -0.02 && slipped < 0.12, "{image:?} {l_b}");
     // One P for the whole of it is another number: the conventions are told apart.
     assert!((by(SourceModel::Visible).0 - integral).abs() > 0.02);
 }
 
-/// Catches: a surface that is a source or none, from one step of a plate before it to the next.
+/// Catches: a luminaire that is a source or none, visibility in coarse steps, an occluder that takes
+/// luminance where it should take solid angle.
 #[test]
-fn a_plate_moving_across_a_luminaire_changes_ugr_without_jumps() {
-    let ugr = |cover: f64| {
+fn a_plate_moving_across_a_luminaire_takes_the_solid_angle_that_it_hides() {
+    const ALLOWED: f64 = 0.1;
+    let of = |cover: f64| {
         let x = 2.9 + cover;
         let text = "[scene]\nfile = \"scene.gltf\"\n[materials]\nshell = { reflectance = 0.5 }\nplate = { reflectance = 0.5 }\n\
                     [luminaires.A]\nlambert = { flux = 3400 }\narea = { rect = [1.2, 0.3] }\n\
@@ -217,14 +229,246 @@ fn a_plate_moving_across_a_luminaire_changes_ugr_without_jumps() {
         let mut sheets = shell([6.0, 4.0, 3.0]);
         sheets.push(("P", "plate", [[2.5, 1.6, 2.8], [x, 1.6, 2.8], [x, 2.4, 2.8], [2.5, 2.4, 2.8]]));
         let outcome = run(text, &gltf(&sheets), 32, Effort { particles: 16, ..Effort::default() });
-        view(&outcome).ugr.clone().expect("a value")
+        let view = view(&outcome);
+        (view.ugr.clone().expect("a value"), view.background_cd_m2)
     };
-    // The line of sight to the luminaire's far end passes the plate's height at x = 3.9.
-    let values: Vec<f64> = (0..8).map(|step| ugr(0.08 * f64::from(step)).value).collect();
-    println!("{values:?}");
-    let steps: Vec<f64> = values.windows(2).map(|pair| pair[0] - pair[1]).collect();
-    assert!(steps.iter().all(|step| step.abs() < 1.2), "{steps:?}");
-    assert!(values[0] - values[7] > 1.0);
+    // Seen from the eye the plate's edge hides the opening up to 1 + (1.9 + cover) · 1.7/1.6.
+    let visible_sr = |cover: f64| {
+        let (from, parts) = (1.0 + (1.9 + cover) * 1.0625, 400);
+        let mut sum = 0.0;
+        for i in 0..parts {
+            for j in 0..40 {
+                let x = from + (4.1 - from) * (f64::from(i) + 0.5) / f64::from(parts);
+                let away = DVec3::new(x - 1.0, -0.15 + 0.3 * (f64::from(j) + 0.5) / 40.0, 1.7);
+                sum += (4.1 - from) * 0.3 / f64::from(parts * 40) * 1.7 / away.length().powi(3);
+            }
+        }
+        sum
+    };
+    let (first, l_b) = of(0.0);
+    let mut lowest = first.value;
+    for step in 1..8 {
+        let cover = 0.08 * f64::from(step);
+        let (ugr, own_l_b) = of(cover);
+        let expected = first.value + 8.0 * (visible_sr(cover) / visible_sr(0.0) * l_b / own_l_b).log10();
+        println!("{cover:.2}: {:.4} ± {:.4}, expected {expected:.4}", ugr.value, ugr.se);
+        // 512 stratified points tell ω to about half a percent.
+        assert!((ugr.value - expected).abs() < ALLOWED, "{cover}: {ugr:?} is not {expected}");
+        // One that takes half of what it hides is told apart at the end.
+        let half = 0.5 * (visible_sr(0.0) + visible_sr(cover));
+        let twin = first.value + 8.0 * (half / visible_sr(0.0) * l_b / own_l_b).log10();
+        assert!(step < 7 || (ugr.value - twin).abs() > 2.0 * ALLOWED);
+        lowest = lowest.min(ugr.value);
+    }
+    assert!(first.value - lowest > 1.0);
+}
+
+/// Catches: a picture of another place or turned, sources out of their places or order, remedies of
+/// another luminaire.
+#[test]
+fn a_card_shows_sources_in_their_places_and_what_helps() {
+    let text = |x: f64, direction: &str| {
+        format!(
+            "[scene]\nbox = {{ size = [6, 4, 3], floor = 0.2, walls = 0.5, ceiling = 0.7 }}\n\
+             [luminaires.A]\nlambert = {{ flux = 3400 }}\narea = {{ rect = [0.6, 0.6] }}\n\
+             [[place]]\nluminaire = \"A\"\nat = [{x}, 2, 2.999]\n\
+             [[viewpoint]]\nname = \"V\"\neye = [1, 2, 1.2]\n{direction}\n"
+        )
+    };
+    let of = |x: f64, direction: &str| {
+        let place = folder(&text(x, direction), &[]);
+        let project = load(place.path(), &LoadOptions::default()).expect("loads");
+        let observed = observe(&project, &CONVENTIONS[..1], 64);
+        let sheet = observed.into_iter().find_map(|view| view.sheet).expect("a card");
+        *sheet
+    };
+    let along = "direction = [1, 0, 0]";
+    let view = of(3.5, along);
+    let card = view.card.as_ref().expect("a card");
+    assert_eq!((card.sources.len(), view.sources.len()), (1, 1));
+    // Straight above the line of sight by atan(1.8/2.5), which is r = θ in an angular fisheye.
+    let theta_deg = (1.799f64 / 2.5).atan().to_degrees();
+    let [x, y] = card.sources[0].centre;
+    assert!((x - 0.5).abs() < 3e-3 && (0.5 - y - theta_deg / 180.0).abs() < 3e-3, "{x} {y}");
+    // The outline holds the centre and spans the opening's 0.6 m aside: atan(0.3/|(2.2, 1.8)|) each way.
+    let widths = card.sources[0].outline.iter().map(|[x, _]| (x - 0.5).abs());
+    let widest = widths.fold(0.0, f64::max);
+    assert!((widest - (0.3f64 / 2.84).atan().to_degrees() / 180.0).abs() < 0.004, "{widest}");
+    // The picture's brightest pixel is the luminaire's, and its light is that of the eye.
+    let brightest = card.picture.luminance_cd_m2.iter().copied().enumerate();
+    let (brightest, _) = brightest.max_by(|a, b| a.1.total_cmp(&b.1)).expect("pixels");
+    let width = card.picture.width;
+    let at = [(brightest % width) as f64 + 0.5, (brightest / width) as f64 + 0.5].map(|k| k / width as f64);
+    assert!((at[0] - x).abs() < 0.05 && (at[1] - y).abs() < 0.06, "{at:?}");
+    let e_v = card.picture.illuminance_lx().expect("a view");
+    assert!((e_v / view.e_v_lx - 1.0).abs() < 0.03, "{e_v} {}", view.e_v_lx);
+    // One luminaire: half of L is a quarter of L²ω.
+    let ugr = view.ugr.clone().expect("a value").value;
+    let dimmed = card.dimmed.as_ref().expect("a luminaire");
+    assert!((dimmed.ugr - (ugr + 8.0 * 0.25f64.log10())).abs() < 1e-9);
+    // Shifted away by 1 m is what an eye sees of a luminaire that hangs there, but for the background.
+    let there = of(4.5, along);
+    let expected =
+        there.ugr.expect("a value").value + 8.0 * (there.background_cd_m2 / view.background_cd_m2).log10();
+    let moved = card.moved.as_ref().expect("a luminaire");
+    let nearer = of(2.5, along);
+    let other = nearer.ugr.as_ref().map_or(f64::INFINITY, |ugr| {
+        ugr.value + 8.0 * (nearer.background_cd_m2 / view.background_cd_m2).log10()
+    });
+    println!("{ugr} moved {moved:?}, away {expected}, nearer {other}");
+    let best = [expected, other].into_iter().fold(f64::INFINITY, f64::min);
+    assert!(moved.ugr <= best + 0.03, "{moved:?}");
+    if matches!(moved.shift, Some(Shift::Away | Shift::Nearer)) {
+        assert!((moved.ugr - best).abs() < 0.03, "{moved:?} {best}");
+    }
+    // Of a sweep the worst direction has the card.
+    let swept = of(3.5, "sweep = { from = 0, to = 270, step = 90 }");
+    assert!(swept.azimuth_deg.abs() < 1e-9);
+}
+
+/// Catches: images of luminous surfaces left in L_b, at the wrong place, without the mirror's reflectance,
+/// or seen through its back.
+#[test]
+fn a_mirror_shows_a_luminous_surface_as_a_second_source() {
+    // A mirror at y = 0, 4 m wide; a bright square at x = 4 that faces −x.
+    let text = |material: &str, extra: &str| {
+        format!(
+            "[scene]\nfile = \"scene.gltf\"\n[materials]\nshell = {{ reflectance = 0.3 }}\nglass = {material}\n\
+             bright = {{ emit = 3000, reflectance = 0.0 }}\n\
+             [[viewpoint]]\nname = \"V\"\neye = [1, 1.5, 1.2]\ndirection = [1, 0, 0]\n{extra}"
+        )
+    };
+    let square = |y: f64| [[4.0, y, 1.3], [4.0, y + 0.4, 1.3], [4.0, y + 0.4, 1.7], [4.0, y, 1.7]];
+    let mirror = ("M", "glass", [[0.5, 0.001, 0.2], [4.5, 0.001, 0.2], [4.5, 0.001, 2.6], [0.5, 0.001, 2.6]]);
+    let with = |material: &str| {
+        let mut sheets = shell([6.0, 4.0, 3.0]);
+        sheets.push(("S", "bright", square(1.8)));
+        sheets.push(mirror);
+        run(&text(material, ""), &gltf(&sheets), 64, Effort::default())
+    };
+    let outcome = with("{ mirror = 0.8 }");
+    let (seen, none) = (view(&outcome).clone(), with("{ reflectance = 0.0 }"));
+    let own = |view: &ViewpointOutcome, mirrored: bool| {
+        let found = view.sources.iter().find(|source| source.label.contains("mirrored") == mirrored);
+        found.cloned()
+    };
+    assert!(own(view(&none), true).is_none());
+    let image = own(&seen, true).expect("an image");
+    assert!((image.luminance_cd_m2 / 2400.0 - 1.0).abs() < 1e-3, "{image:?}");
+    // The same square at y = −2.2 … −1.8, seen from (1, 1.5, 1.2): closed form by fine pieces.
+    let mut size_sr = 0.0;
+    for i in 0..100 {
+        for j in 0..100 {
+            let at = |k: i32| 0.4 * (f64::from(k) + 0.5) / 100.0;
+            let away = DVec3::new(3.0, -0.001 - 2.199 + at(i) - 1.5, 0.1 + at(j));
+            size_sr += 0.16e-4 * 3.0 / away.length().powi(3);
+        }
+    }
+    assert!((image.solid_angle_sr / size_sr - 1.0).abs() < 5e-3, "{} {size_sr}", image.solid_angle_sr);
+    // E_v = π L_b + what comes straight from the sources.
+    let direct = |y: f64, luminance: f64| {
+        let mut sum = 0.0;
+        for i in 0..100 {
+            for j in 0..100 {
+                let at = |k: i32| 0.4 * (f64::from(k) + 0.5) / 100.0;
+                let away = DVec3::new(3.0, y + at(i) - 1.5, 0.1 + at(j));
+                sum += luminance * 0.16e-4 * 9.0 / away.length().powi(4);
+            }
+        }
+        sum
+    };
+    let expected = PI * seen.background_cd_m2 + direct(1.8, 3000.0) + direct(-2.198, 2400.0);
+    assert!((seen.e_v_lx / expected - 1.0).abs() < 1e-3, "{} {expected}", seen.e_v_lx);
+}
+
+/// Catches: highlights at the wrong place, of the wrong luminance or size, counted twice, or left in L_b; a
+/// sharp lobe that is not a mirror; a threshold that is not there.
+#[test]
+fn a_sharp_highlight_is_a_mirror_image_and_a_wide_one_is_not() {
+    let of = |floor: &str, extra: &str| {
+        let text = format!(
+            "[scene]\nfile = \"scene.gltf\"\n[materials]\nshell = {{ reflectance = 0.3 }}\nfloor = {floor}\n\
+             [luminaires.A]\nlambert = {{ flux = 6000 }}\narea = {{ rect = [0.6, 0.6] }}\n\
+             [[place]]\nluminaire = \"A\"\nat = [4.0, 2, 2.9]\n\
+             [[viewpoint]]\nname = \"V\"\neye = [1, 2, 1.2]\ndirection = [1, 0, 0]\n{extra}"
+        );
+        let mut sheets = shell([6.0, 4.0, 3.0]);
+        sheets.push(("F", "floor", [[0.0, 0.0, 0.01], [6.0, 0.0, 0.01], [6.0, 4.0, 0.01], [0.0, 4.0, 0.01]]));
+        view(&run(&text, &gltf(&sheets), 256, Effort::default())).clone()
+    };
+    let mirror = of("{ mirror = 0.3 }", "");
+    let sharp = of("{ reflectance = 0.0, specular = 0.3, phong = 1000000 }", "");
+    let wide = of("{ reflectance = 0.0, specular = 0.3, phong = 60 }", "");
+    let off = of("{ reflectance = 0.0, specular = 0.3, phong = 1000000 }", "highlights = false\n");
+    let value = |view: &ViewpointOutcome| view.ugr.clone().expect("a value");
+    let reflected = |view: &ViewpointOutcome| {
+        let found =
+            view.sources.iter().find(|s| s.label.contains("highlight") || s.label.contains("mirrored"));
+        found.cloned()
+    };
+    let (a, b) = (reflected(&mirror).expect("an image"), reflected(&sharp).expect("a highlight"));
+    println!("mirror {a:?}\nhighlight {b:?}\nwide {:?}", reflected(&wide));
+    println!("UGR {:?} {:?} {:?} {:?}", value(&mirror), value(&sharp), value(&wide), value(&off));
+    let term = |s: &gershun::outcome::GlareSourceOutcome| {
+        s.luminance_cd_m2.powi(2) * s.solid_angle_sr / s.position_index.powi(2)
+    };
+    assert!((b.luminance_cd_m2 / a.luminance_cd_m2 - 1.0).abs() < 0.05, "{b:?}");
+    assert!((term(&b) / term(&a) - 1.0).abs() < 0.05, "{} {}", term(&b), term(&a));
+    let allowed = 4.0 * value(&mirror).se.hypot(value(&sharp).se) + 0.02;
+    assert!(allowed < 1.2 && (value(&mirror).value - value(&sharp).value).abs() < allowed, "{allowed}");
+    // What is a source is not background: both see the same E_v, and the same L_b.
+    // UGR moves by 3.47 times what L_b moves by; the lobe's rays make most of the noise.
+    let noise = 4.0 * value(&sharp).se / 3.47;
+    assert!((sharp.e_v_lx / mirror.e_v_lx - 1.0).abs() < noise);
+    assert!((sharp.background_cd_m2 / mirror.background_cd_m2 - 1.0).abs() < noise);
+    // Switched off, all of it is; and a wide highlight is fainter and larger.
+    assert!(reflected(&off).is_none() && off.background_cd_m2 > 1.05 * sharp.background_cd_m2);
+    assert!(off.notes.iter().any(|note| note.contains("belong to the background")));
+    if let Some(wide) = reflected(&wide) {
+        assert!(wide.luminance_cd_m2 < 0.8 * b.luminance_cd_m2 && wide.solid_angle_sr > b.solid_angle_sr);
+    }
+    let sum = |view: &ViewpointOutcome| (view.e_v_lx - PI * view.background_cd_m2) / view.e_v_lx;
+    assert!(sum(&sharp) > sum(&off));
+}
+
+/// Catches: look-ups that lose light, walks that mend the wrong patch, errors that are not what they say.
+#[test]
+fn a_swift_map_is_as_good_as_an_unbiased_one() {
+    let text = |walls: f64| {
+        format!(
+            "[scene]\nbox = {{ size = [6, 4, 3], floor = 0.2, walls = {walls}, ceiling = 0.7 }}\n\
+             [luminaires.A]\nlambert = {{ flux = 3400 }}\narea = {{ rect = [1.2, 0.3] }}\n\
+             [[place]]\nluminaire = \"A\"\nfield = {{ rows = 2, columns = 2, height = 2.9 }}\n\
+             [[glare_map]]\nrect = {{ origin = [0, 0, 1.2], u = [6, 0, 0], v = [0, 4, 0] }}\nstep = 1\nindices = [\"DGP\", \"E_v\"]\n"
+        )
+    };
+    let of = |walls: f64, method: MapMethod| {
+        let place = folder(&text(walls), &[]);
+        let project = load(place.path(), &LoadOptions::default()).expect("loads");
+        maps(&project, method).remove(0)
+    };
+    let (swift, exact) = (of(0.5, MapMethod::default()), of(0.5, MapMethod::Unbiased(512)));
+    let twin = of(0.45, MapMethod::default());
+    let worst = |map: &Mapped| {
+        let mut worst: f64 = 0.0;
+        for (eye, other) in map.eyes.iter().zip(&exact.eyes) {
+            for ((ugr, further), (truth, true_further)) in eye.views.iter().zip(&other.views) {
+                assert_eq!(ugr.is_ok(), truth.is_ok());
+                if let (Ok(ugr), Ok(truth)) = (ugr, truth) {
+                    worst = worst.max(((ugr.value - truth.value).abs() - 4.0 * truth.se) / 0.15);
+                }
+                let value = |index: &IndexOutcome| index.estimate.clone().expect("a value");
+                let (ours, theirs) = (value(&further[1]), value(&true_further[1]));
+                worst =
+                    worst.max(((ours.value - theirs.value).abs() - 4.0 * theirs.se) / (0.04 * theirs.value));
+            }
+        }
+        worst
+    };
+    let (own, other) = (worst(&swift), worst(&twin));
+    println!("largest error {own} of what is allowed; with walls of 0.45 {other}");
+    assert!(own < 1.0, "{own}");
+    assert!(other > 1.0, "{other}");
 }
 
 /// Catches: eyes and directions mixed up, rows of another receiver, a map that is not what observers see.
@@ -237,14 +481,14 @@ fn a_map_says_what_an_observer_at_its_points_says() {
                 [[glare_map]]\nrect = { origin = [0, 0, 1.2], u = [6, 0, 0], v = [0, 4, 0] }\nstep = 1\nindices = [\"DGP\"]\n";
     let place = folder(text, &[]);
     let project = load(place.path(), &LoadOptions::default()).expect("loads");
-    let found = maps(&project, 64);
+    let found = maps(&project, MapMethod::Unbiased(64));
     let observed = observe(&project, &CONVENTIONS[..1], 64);
     assert_eq!((found.len(), found[0].eyes.len(), observed.len()), (1, 24, 8));
     // The viewpoint lies between four eyes of the map; its own eye is at none, so take a second map.
     let nearest = "[[glare_map]]\nname = \"at\"\nrect = { origin = [1, 0.5, 1.2], u = [1, 0, 0], v = [0, 1, 0] }\nstep = 1\nindices = [\"DGP\"]\n";
     let place = folder(&format!("{text}{nearest}"), &[]);
     let project = load(place.path(), &LoadOptions::default()).expect("loads");
-    let eye = &maps(&project, 64)[1].eyes[0];
+    let eye = &maps(&project, MapMethod::Unbiased(64))[1].eyes[0];
     assert!((eye.position - DVec3::new(1.5, 1.0, 1.2)).length() < 1e-12);
     let mut compared = 0;
     for (view, (ugr, further)) in observed.iter().zip(&eye.views) {

@@ -211,8 +211,9 @@ impl Context<'_> {
         let weights = self.initial(light_scene, &self.world.rooms[room]);
         let sighted = &self.seen[room][index];
         let convention = Convention::default();
-        let asked = view::Asked { gaze: planned.direction, row: planned.row, indices, convention };
-        view::glare(&self.answers, self.emitters, sighted, &asked, &weights, alpha)
+        let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
+        let asked = view::Asked { gaze: planned.direction, indices, convention };
+        view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
     }
 }
 

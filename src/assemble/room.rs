@@ -142,6 +142,7 @@ impl Context<'_> {
                     e_v_lx: glare.e_v_lx,
                     sources: glare.sources,
                     notes: glare.notes,
+                    card: None,
                 });
             }
         }

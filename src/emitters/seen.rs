@@ -3,16 +3,15 @@
 use glam::DVec3;
 
 use super::Emitters;
-use super::shining::{Shining, shining_coarsely, shining_from};
+use super::glints::{Glint, glints_from};
+use super::shining::{Shining, shining_from};
 use crate::estimate::Estimate;
 use crate::rng::{Rng, Stratified};
 
 /// Replicates from which the errors of visible quantities are taken.
-const REPLICATES: usize = 16;
+pub(super) const REPLICATES: usize = 16;
 /// Points of the opening in each replicate.
 const POINTS: u32 = 32;
-/// The same for maps.
-const COARSE_POINTS: u32 = 8;
 /// Pieces of an opening along each of its two parameters.
 const PIECES: usize = 8;
 
@@ -29,6 +28,9 @@ pub struct Seen {
     pub solid_angle_sr: Estimate,
     /// ∫ L dω over the visible part, lx on a plane facing the source: I/d² of what is visible.
     pub normal_lx: Estimate,
+    /// ∫ L d dω over the visible part, d the unit direction from the eye, lx: its part along a normal is
+    /// the illuminance on a plane that has all of it in front.
+    pub light: DVec3,
     /// Visible share of the unobstructed solid angle (for points: of the light).
     pub visible_fraction: f64,
     /// Projected area of the whole opening towards the eye, m².
@@ -55,22 +57,20 @@ pub struct SeenPiece {
 pub struct Sighted {
     /// Luminaires and their images.
     pub luminaires: Vec<Seen>,
-    /// Luminous surfaces.
+    /// Luminous surfaces and their images.
     pub surfaces: Vec<Shining>,
+    /// Highlights in glossy planes; `None` where they were not looked for.
+    pub glints: Option<Vec<Glint>>,
 }
 
-/// [`sighted_from`] with a quarter of the rays: for maps of many eyes, whose intervals say what it costs.
-pub fn sighted_coarsely(emitters: &Emitters, eye: DVec3, seed: u64) -> Sighted {
-    let all = 0..emitters.sources.len();
+/// Luminaires and luminous surfaces of which anything is visible from `eye`, and `highlights` if they are
+/// wanted. Draws from `seed` only.
+pub fn sighted_from(emitters: &Emitters, eye: DVec3, seed: u64, highlights: bool) -> Sighted {
     Sighted {
-        luminaires: all.filter_map(|index| seen(emitters, index, eye, seed, COARSE_POINTS)).collect(),
-        surfaces: shining_coarsely(emitters.scene, eye, seed),
+        luminaires: seen_from(emitters, eye, seed),
+        surfaces: shining_from(emitters, eye, seed),
+        glints: highlights.then(|| glints_from(emitters, eye, seed)),
     }
-}
-
-/// Luminaires and luminous surfaces of which anything is visible from `eye`. Draws from `seed` only.
-pub fn sighted_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Sighted {
-    Sighted { luminaires: seen_from(emitters, eye, seed), surfaces: shining_from(emitters.scene, eye, seed) }
 }
 
 impl Seen {
@@ -86,7 +86,7 @@ pub fn seen_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Seen> {
     (0..emitters.sources.len()).filter_map(|index| seen(emitters, index, eye, seed, POINTS)).collect()
 }
 
-fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -> Option<Seen> {
+pub(super) fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -> Option<Seen> {
     let source = &emitters.sources[index];
     if !emitters.may_show(source, eye) {
         return None;
@@ -97,6 +97,7 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -
     let mut light = Vec::with_capacity(REPLICATES);
     let mut whole = 0.0;
     let mut passed_sum = 0.0;
+    let mut vector = DVec3::ZERO;
     let points = if source.is_point() { 1 } else { points };
     let place = source.place(eye);
     let mut cells = [(DVec3::ZERO, 0.0, 0.0); PIECES * PIECES];
@@ -116,6 +117,7 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -
             // Behind a pane or in a mirror the source keeps its solid angle and loses luminance.
             solid_sr += if passed > 0.0 { element_sr } else { 0.0 };
             normal_lx += arrival.normal_lx * passed;
+            vector += arrival.direction * (arrival.normal_lx * passed);
             if passed > 0.0 {
                 let place = u.map(|part| ((part * PIECES as f64) as usize).min(PIECES - 1));
                 let cell = &mut cells[place[0] * PIECES + place[1]];
@@ -131,7 +133,8 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -
         return None;
     }
     let solid_angle_sr = Estimate::from_blocks(&solid);
-    let whole_sr = whole / (REPLICATES as f64 * f64::from(points));
+    let count = REPLICATES as f64 * f64::from(points);
+    let whole_sr = whole / count;
     Some(Seen {
         source: index,
         direction: centre.normalize_or_zero(),
@@ -139,11 +142,12 @@ fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -
         visible_fraction: if whole_sr > 0.0 { solid_angle_sr.value / whole_sr } else { 1.0 },
         solid_angle_sr,
         normal_lx: Estimate::from_blocks(&light),
+        light: vector / count,
         projected_area_m2: source.opening.projected_area_m2(place.normalize_or_zero()),
         centre_lx: emitters.luminaire(source).kind.distribution.intensity_along(place.normalize_or_zero())
             * source.dim
             / place.length_squared(),
-        pieces: pieces(&cells, REPLICATES as f64 * f64::from(points)),
+        pieces: pieces(&cells, count),
     })
 }
 

@@ -3,8 +3,9 @@
 
 use glam::DVec3;
 
+use super::Emitters;
 use crate::rng::Rng;
-use crate::scene::{Channel, Scene};
+use crate::scene::Channel;
 
 /// Solid angle above which a piece is cut into four, sr.
 const PIECE_SR: f64 = 0.004;
@@ -20,6 +21,8 @@ const REPLICATES: usize = 16;
 pub struct Shining {
     /// Index into the mesh's surfaces.
     pub surface: usize,
+    /// Plane in which it is seen; `None` for the surface itself.
+    pub mirror: Option<usize>,
     /// Channel of its light.
     pub channel: usize,
     /// Emitted luminance, cd/m²; what it reflects besides belongs to the background.
@@ -48,17 +51,33 @@ pub struct Piece {
 }
 
 /// All luminous surfaces of which anything is visible from `eye`. Draws from `seed` only.
-pub fn shining_from(scene: &Scene, eye: DVec3, seed: u64) -> Vec<Shining> {
-    shining_in_pieces(scene, eye, seed, PIECE_SR)
+pub fn shining_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Shining> {
+    shining_in_pieces(emitters, eye, seed, PIECE_SR)
 }
 
 /// [`shining_from`] in coarse pieces, for maps of many eyes.
-pub(super) fn shining_coarsely(scene: &Scene, eye: DVec3, seed: u64) -> Vec<Shining> {
-    shining_in_pieces(scene, eye, seed, COARSE_SR)
+pub(super) fn shining_coarsely(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Shining> {
+    shining_in_pieces(emitters, eye, seed, COARSE_SR)
 }
 
 /// [`shining_from`] with pieces of at most `piece_sr`.
-pub fn shining_in_pieces(scene: &Scene, eye: DVec3, seed: u64, piece_sr: f64) -> Vec<Shining> {
+pub fn shining_in_pieces(emitters: &Emitters, eye: DVec3, seed: u64, piece_sr: f64) -> Vec<Shining> {
+    let mut found = Vec::new();
+    for mirror in std::iter::once(None).chain((0..emitters.mirrors.len()).map(Some)) {
+        found.extend(shining_in(emitters, mirror, eye, seed, piece_sr));
+    }
+    found
+}
+
+/// Luminous surfaces themselves, or their images in one plane.
+fn shining_in(
+    emitters: &Emitters,
+    mirror: Option<usize>,
+    eye: DVec3,
+    seed: u64,
+    piece_sr: f64,
+) -> Vec<Shining> {
+    let scene = emitters.scene;
     let mesh = &scene.mesh;
     let mut found: Vec<Shining> = Vec::new();
     for triangle in 0..mesh.triangles.len() {
@@ -71,9 +90,20 @@ pub fn shining_in_pieces(scene: &Scene, eye: DVec3, seed: u64, piece_sr: f64) ->
         let Some(channel) = scene.channels.iter().position(|c| *c == Channel::Surfaces { material }) else {
             continue;
         };
+        let mut corners = mesh.corners(triangle);
+        if let Some(mirror) = mirror {
+            let plane = &emitters.mirrors[mirror];
+            let side = |point: DVec3| point.dot(plane.normal) - plane.offset_m;
+            // An image lies behind the plane; one of a surface that reaches through it is left out.
+            if corners.iter().any(|&corner| !(side(corner) * side(eye) > 0.0)) {
+                continue;
+            }
+            corners = corners.map(|corner| plane.image(corner));
+        }
         let index = found.iter().position(|known| known.surface == surface).unwrap_or_else(|| {
             found.push(Shining {
                 surface,
+                mirror,
                 channel,
                 luminance_cd_m2,
                 pieces: Vec::new(),
@@ -82,65 +112,65 @@ pub fn shining_in_pieces(scene: &Scene, eye: DVec3, seed: u64, piece_sr: f64) ->
             });
             found.len() - 1
         });
-        let mut rng = Rng::new(seed, u64::MAX - 1, triangle as u64);
-        cut(scene, eye, mesh.corners(triangle), [0, DEEPEST], piece_sr, &mut rng, &mut found[index]);
+        // An image's draws differ from those of the surface and of other images.
+        let item = triangle as u64 + mirror.map_or(0, |mirror| (mirror as u64 + 1) << 32);
+        let mut rng = Rng::new(seed, u64::MAX - 1, item);
+        let cutter = Cutter { emitters, eye, piece_sr };
+        cutter.cut(corners, [0, DEEPEST], &mut rng, &mut found[index]);
     }
     found.retain(|surface| !surface.pieces.is_empty());
     found
 }
 
-fn cut(
-    scene: &Scene,
+struct Cutter<'e> {
+    emitters: &'e Emitters<'e>,
     eye: DVec3,
-    corners: [DVec3; 3],
-    [depth, deepest]: [u32; 2],
     piece_sr: f64,
-    rng: &mut Rng,
-    shining: &mut Shining,
-) {
-    let solid_angle_sr = solid_angle(corners.map(|corner| corner - eye));
-    if !(solid_angle_sr > 0.0) {
-        return;
-    }
-    if solid_angle_sr > piece_sr && depth < deepest {
-        let [a, b, c] = corners;
-        let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
-        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-            cut(scene, eye, part, [depth + 1, deepest], piece_sr, rng, shining);
+}
+
+impl Cutter<'_> {
+    fn cut(&self, corners: [DVec3; 3], [depth, deepest]: [u32; 2], rng: &mut Rng, shining: &mut Shining) {
+        let eye = self.eye;
+        let solid_angle_sr = solid_angle(corners.map(|corner| corner - eye));
+        if !(solid_angle_sr > 0.0) {
+            return;
         }
-        return;
-    }
-    let [a, b, c] = corners;
-    let middle = (a + b + c) / 3.0;
-    let towards = middle - eye;
-    let normal = (b - a).cross(c - a);
-    let distance_m = towards.length();
-    shining.whole_sr += solid_angle_sr;
-    shining.projected_area_m2 += 0.5 * normal.dot(towards / distance_m).abs();
-    let (mut visible, mut passed, mut squares) = (0.0, 0.0, 0.0);
-    for replicate in 0..REPLICATES {
-        // Strata along one edge, random across: all parts of the piece are asked.
-        let along = ((replicate as f64 + rng.uniform()) / REPLICATES as f64).sqrt();
-        let across = rng.uniform();
-        let at = a + along * ((b - a) + across * (c - b));
-        let ray = at - eye;
-        let distance_m = ray.length();
-        let reach = distance_m - 2.0 * scene.tracer.offset_m();
-        let through = scene.tracer.transmittance(eye, ray / distance_m, reach, &[]);
-        visible += f64::from(u8::from(through > 0.0));
-        passed += through;
-        squares += through * through;
-    }
-    if passed > 0.0 {
-        let n = REPLICATES as f64;
-        let variance = (squares / n - (passed / n) * (passed / n)).max(0.0) / (n - 1.0);
-        shining.pieces.push(Piece {
-            direction: towards / distance_m,
-            visible_sr: solid_angle_sr * visible / n,
-            passed_sr: solid_angle_sr * passed / n,
-            passed_vector: vector(corners.map(|corner| corner - eye), towards) * (passed / n),
-            se_sr: solid_angle_sr * variance.sqrt(),
-        });
+        let [a, b, c] = corners;
+        if solid_angle_sr > self.piece_sr && depth < deepest {
+            let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+            for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+                self.cut(part, [depth + 1, deepest], rng, shining);
+            }
+            return;
+        }
+        let middle = (a + b + c) / 3.0;
+        let towards = middle - eye;
+        let normal = (b - a).cross(c - a);
+        let distance_m = towards.length();
+        shining.whole_sr += solid_angle_sr;
+        shining.projected_area_m2 += 0.5 * normal.dot(towards / distance_m).abs();
+        let (mut visible, mut passed, mut squares) = (0.0, 0.0, 0.0);
+        for replicate in 0..REPLICATES {
+            // Strata along one edge, random across: all parts of the piece are asked.
+            let along = ((replicate as f64 + rng.uniform()) / REPLICATES as f64).sqrt();
+            let across = rng.uniform();
+            let at = a + along * ((b - a) + across * (c - b));
+            let through = self.emitters.clear(eye, at, shining.mirror);
+            visible += f64::from(u8::from(through > 0.0));
+            passed += through;
+            squares += through * through;
+        }
+        if passed > 0.0 {
+            let n = REPLICATES as f64;
+            let variance = (squares / n - (passed / n) * (passed / n)).max(0.0) / (n - 1.0);
+            shining.pieces.push(Piece {
+                direction: towards / distance_m,
+                visible_sr: solid_angle_sr * visible / n,
+                passed_sr: solid_angle_sr * passed / n,
+                passed_vector: vector(corners.map(|corner| corner - eye), towards) * (passed / n),
+                se_sr: solid_angle_sr * variance.sqrt(),
+            });
+        }
     }
 }
 
@@ -171,6 +201,7 @@ mod tests {
     use super::*;
     use crate::geometry::mesh::Mesh;
     use crate::material::{Bsdf, Material};
+    use crate::scene::Scene;
 
     /// A luminous square of 1 m at z = 1 over an eye at the origin, and a dark plate of `cover` × 1 m
     /// half way up that hides it from x = −0.5 (in the square's measure) on.
@@ -196,7 +227,8 @@ mod tests {
     }
 
     fn visible_sr(scene: &Scene, piece_sr: f64) -> f64 {
-        let seen = shining_in_pieces(scene, DVec3::ZERO, 1, piece_sr);
+        let emitters = Emitters::new(scene);
+        let seen = shining_in_pieces(&emitters, DVec3::ZERO, 1, piece_sr);
         seen.iter().flat_map(|surface| &surface.pieces).map(|piece| piece.visible_sr).sum()
     }
 
@@ -209,7 +241,8 @@ mod tests {
         let half = visible_sr(&scene(0.5), PIECE_SR);
         assert!((half / whole - 0.5).abs() < 0.01, "{}", half / whole);
         // An opaque plate over all of it: nothing is seen.
-        assert!(shining_from(&scene(1.0), DVec3::ZERO, 1).is_empty());
+        let hidden = scene(1.0);
+        assert!(shining_from(&Emitters::new(&hidden), DVec3::ZERO, 1).is_empty());
     }
 
     #[test]

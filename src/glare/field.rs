@@ -29,6 +29,9 @@ pub struct Field {
     pub pixels: Vec<Pixel>,
     /// Columns and rows of the image.
     pub size: [usize; 2],
+    /// For each column the direction of its pixel in the middle row (below the centre where the number of
+    /// rows is even); `None` outside the projection.
+    pub level: Vec<Option<DVec3>>,
     /// Pixels that are no number, infinite or negative: left out.
     pub bad_pixels: usize,
     /// Pixels that a mask hides.
@@ -54,15 +57,18 @@ impl Field {
             )));
         }
         let size = image.size();
-        let mut field = Self { size, ..Self::default() };
+        let of_eye = |at: [f64; 2]| {
+            let direction = view.direction(size, at)?;
+            Some(DVec3::from_array([view.right(), view.up(), view.forward()].map(|axis| direction.dot(axis))))
+        };
+        let middle = (image.height / 2) as f64 + 0.5;
+        let level = (0..image.width).map(|column| of_eye([column as f64 + 0.5, middle])).collect();
+        let mut field = Self { size, level, ..Self::default() };
         for row in 0..image.height {
             for column in 0..image.width {
                 let index = row * image.width + column;
-                let Some(direction) = view.direction(size, [column as f64 + 0.5, row as f64 + 0.5]) else {
-                    continue;
-                };
-                let [x, y, z] = [view.right(), view.up(), view.forward()].map(|axis| direction.dot(axis));
-                if !(z > 0.0) {
+                let Some(direction) = of_eye([column as f64 + 0.5, row as f64 + 0.5]) else { continue };
+                if !(direction.z > 0.0) {
                     continue;
                 }
                 if mask.is_some_and(|mask| !(mask.luminance_cd_m2[index] > 0.0)) {
@@ -75,7 +81,6 @@ impl Field {
                     continue;
                 }
                 let [solid_angle_sr, projected_sr] = view.solid_angles_sr(size, [column, row]);
-                let direction = DVec3::new(x, y, z);
                 field.pixels.push(Pixel {
                     index: index as u32,
                     direction,
@@ -128,16 +133,17 @@ impl Field {
         })
     }
 
-    /// Statistics of the horizontal band within `half_angle_rad` above and below the line of sight.
+    /// Statistics of the horizontal band of all pixels within `half_angle_rad` of the pixel that lies in
+    /// their column in the middle row: so evalglare's option `-B` counts, by its published statistics.
     ///
     /// # Errors
     /// The band holds no pixel.
     pub fn band(&self, half_angle_rad: f64) -> Result<Band, Undefined> {
-        let within: Vec<&Pixel> = self
-            .pixels
-            .iter()
-            .filter(|pixel| pixel.direction.y.clamp(-1.0, 1.0).asin().abs() <= half_angle_rad)
-            .collect();
+        let level = |pixel: &Pixel| self.level.get(pixel.index as usize % self.size[0]).copied().flatten();
+        let near = |pixel: &&Pixel| {
+            level(pixel).is_some_and(|level| angle(level, pixel.direction) <= half_angle_rad)
+        };
+        let within: Vec<&Pixel> = self.pixels.iter().filter(near).collect();
         let mut sorted: Vec<f64> = within.iter().map(|pixel| pixel.luminance).collect();
         sorted.sort_by(f64::total_cmp);
         let solid_angle_sr: f64 = within.iter().map(|pixel| pixel.solid_angle_sr).sum();

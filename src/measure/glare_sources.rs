@@ -1,9 +1,11 @@
 //! What an eye sees → sources of the indices: luminaires and luminous surfaces in front of it, by a
 //! declared convention. Luminances come from the photometry, never from pixels.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
-use crate::emitters::{Emitters, Seen, Shining, Sighted};
+use crate::emitters::{Emitters, Glint, GlintPiece, Seen, Shining, Sighted};
 use crate::estimate::Estimate;
 use crate::glare::position_index::{Position, PositionModel};
 use crate::glare::propagate::SourceError;
@@ -59,6 +61,10 @@ pub struct Counted {
     pub label: String,
     /// Visible share.
     pub visible_fraction: f64,
+    /// Unit direction from the eye to the middle of what is visible.
+    pub direction: DVec3,
+    /// Index into [`Emitters::sources`]; `None` for a luminous surface.
+    pub emitter: Option<usize>,
 }
 
 /// The sources of a view.
@@ -68,17 +74,24 @@ pub struct Sources {
     pub counted: Vec<Counted>,
     /// What is to be said about them.
     pub notes: Vec<String>,
-    /// Illuminance of the eye straight from luminous surfaces with its standard error, lx.
+    /// Illuminance of the eye from sources that the sheets count as indirect light (luminous surfaces, their
+    /// images, highlights), with its standard error, lx.
     pub surfaces_lx: [f64; 2],
 }
 
-/// The sources in front of an eye that looks along `gaze`; `weights` are of the channels.
+/// A highlight is a source where its luminance exceeds this many times E_v/π, the eye's mean luminance
+/// weighted by the cosine: the factor that is usual for sources found in images.
+pub const HIGHLIGHT: f64 = 5.0;
+
+/// The sources in front of an eye that looks along `gaze`; `weights` are of the channels, `e_v_lx` is all
+/// the light on the plane of the eye.
 pub fn sources(
     emitters: &Emitters,
     sighted: &Sighted,
     gaze: DVec3,
     weights: &[f64],
     convention: Convention,
+    e_v_lx: f64,
 ) -> Sources {
     let frame = Frame::new(gaze, convention.position);
     let mut found = Sources::default();
@@ -100,11 +113,27 @@ pub fn sources(
         let name = &emitters.scene.mesh.surfaces[surface.surface].name;
         found.counted.extend(luminous_surface(surface, luminance, &frame, name, eye_lx, &mut found.notes));
     }
+    for glint in sighted.glints.iter().flatten() {
+        let weight = weights[emitters.sources[glint.source].channel];
+        let least = HIGHLIGHT * e_v_lx / PI;
+        if let Some((counted, se_lx)) = highlight(emitters, glint, weight, least, &frame, &mut found.notes) {
+            found.surfaces_lx[0] += counted.source.eye_lx;
+            variance += se_lx * se_lx;
+            found.counted.push(counted);
+        }
+    }
+    if !emitters.glossy.is_empty() {
+        found.notes.push(if sighted.glints.is_some() {
+            format!("highlights in glossy planes are sources where they exceed {HIGHLIGHT} E_v/π; others, and what is fainter, belong to the background")
+        } else {
+            "highlights on glossy surfaces belong to the background".to_owned()
+        });
+    }
     found.surfaces_lx[1] = f64::sqrt(variance);
     if sighted.surfaces.iter().any(|surface| weights[surface.channel] > 0.0) {
         found.notes.push(
-            "luminous surfaces: emitted light in pieces with their own position index; what they reflect, and \
-             their images in mirrors, belong to the background"
+            "luminous surfaces: emitted light in pieces with their own position index; what they reflect belongs \
+             to the background"
                 .into(),
         );
     }
@@ -186,6 +215,8 @@ fn luminaire(
         error: SourceError { light: relative(one.normal_lx), solid_angle: relative(one.solid_angle_sr) },
         label: label(emitters, one.source),
         visible_fraction: one.visible_fraction,
+        direction: one.light.try_normalize().unwrap_or(one.direction),
+        emitter: Some(one.source),
     })
 }
 
@@ -256,9 +287,60 @@ fn luminous_surface(
         },
         // Visibility moves light and solid angle together.
         error: SourceError { light: se_sr / passed_sr, solid_angle: se_sr / passed_sr },
-        label: format!("{name} (luminous surface)"),
+        label: format!(
+            "{name} (luminous surface{})",
+            if surface.mirror.is_some() { ", mirrored" } else { "" }
+        ),
         visible_fraction: visible_sr / surface.whole_sr,
+        direction: ahead().map(|piece| piece.passed_vector).sum::<DVec3>().normalize_or_zero(),
+        emitter: None,
     })
+}
+
+/// The part of a highlight that is brighter than `least`, cd/m², and the standard error of its light on
+/// the plane of the eye, lx. Σ L²ω/P² is made of products of independent estimates of L.
+fn highlight(
+    emitters: &Emitters,
+    glint: &Glint,
+    weight: f64,
+    least: f64,
+    frame: &Frame,
+    notes: &mut Vec<String>,
+) -> Option<(Counted, f64)> {
+    let count = glint.pieces.len().max(1) as f64;
+    let counts =
+        |piece: &&GlintPiece| weight * piece.luminance_cd_m2 > least && piece.direction.dot(frame.gaze) > 0.0;
+    let bright = || glint.pieces.iter().map(|pieces| pieces.iter().filter(counts));
+    let pieces = bright().flatten();
+    let pieces = pieces
+        .map(|piece| (piece.direction, piece.solid_angle_sr / count, weight * piece.square.max(0.0).sqrt()));
+    let (luminance, solid_angle_sr, position_index) = merged(pieces, frame, notes)?;
+    let light = |piece: &GlintPiece| weight * piece.luminance_cd_m2 * piece.solid_angle_sr;
+    let sums = |of: &dyn Fn(&GlintPiece) -> f64| -> Estimate {
+        Estimate::from_blocks(&bright().map(|pieces| pieces.map(of).sum()).collect::<Vec<f64>>())
+    };
+    let on_eye = sums(&|piece| light(piece) * piece.direction.dot(frame.gaze));
+    let (whole, size) = (sums(&light), sums(&|piece| piece.solid_angle_sr));
+    let direction = bright().flatten().map(|piece| light(piece) * piece.direction).sum::<DVec3>();
+    let direction = direction.try_normalize()?;
+    let name = &emitters.scene.mesh.surfaces[glint.surface as usize].name;
+    let luminaire = label(emitters, glint.source);
+    let counted = Counted {
+        source: GlareSource {
+            luminance: Nits(luminance),
+            solid_angle_sr,
+            position_index,
+            off_axis_deg: direction.dot(frame.gaze).clamp(-1.0, 1.0).acos().to_degrees(),
+            eye_lx: on_eye.value,
+            extent: None,
+        },
+        error: SourceError { light: whole.se / whole.value, solid_angle: size.se / size.value },
+        label: format!("{luminaire}, highlight on {name}"),
+        visible_fraction: 1.0,
+        direction,
+        emitter: None,
+    };
+    Some((counted, on_eye.se))
 }
 
 fn label(emitters: &Emitters, index: usize) -> String {

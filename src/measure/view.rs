@@ -22,8 +22,6 @@ use crate::units::Nits;
 pub struct Asked<'a> {
     /// Unit line of sight.
     pub gaze: DVec3,
-    /// Row of the illuminance on the plane of the eye.
-    pub row: usize,
     /// Keys of the indices wanted beside UGR.
     pub indices: &'a [&'static str],
     /// How sources and positions are taken.
@@ -71,28 +69,46 @@ impl GaugedIndex {
     }
 }
 
-/// Glare of the observer that sees `sighted`; `weights` are initial.
+/// Illuminance on the plane of the eye, lx, initial flux.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EyeLight {
+    /// Straight from luminaires and from their images.
+    pub from_luminaires: Estimate,
+    /// All other.
+    pub indirect: Estimate,
+}
+
+impl EyeLight {
+    /// Of a row of the sheets.
+    pub fn of_row(answers: &Answers, row: usize, weights: &[f64]) -> Self {
+        let parts = [Part::Direct, Part::Image, Part::Indirect].map(|part| answers.part(row, weights, part));
+        let [direct, image, indirect] = &parts;
+        let from_luminaires: Vec<f64> = direct.iter().zip(image).map(|(a, b)| a + b).collect();
+        Self {
+            from_luminaires: Estimate::from_blocks(&from_luminaires),
+            indirect: Estimate::from_blocks(indirect),
+        }
+    }
+}
+
+/// Glare of the observer that sees `sighted`, with `light` in the eye; `weights` are initial.
 pub fn glare(
-    answers: &Answers,
+    light: &EyeLight,
     emitters: &Emitters,
     sighted: &Sighted,
     asked: &Asked,
     weights: &[f64],
     alpha: f64,
 ) -> Glare {
-    let parts =
-        [Part::Direct, Part::Image, Part::Indirect].map(|part| answers.part(asked.row, weights, part));
-    let [direct, image, indirect] = &parts;
-    let from_luminaires: Vec<f64> = direct.iter().zip(image).map(|(a, b)| a + b).collect();
-    let (from_luminaires, indirect) =
-        (Estimate::from_blocks(&from_luminaires), Estimate::from_blocks(indirect));
-    let found = sources(emitters, sighted, asked.gaze, weights, asked.convention);
+    let EyeLight { from_luminaires, indirect } = *light;
+    let e_v_lx = from_luminaires.value + indirect.value;
+    let found = sources(emitters, sighted, asked.gaze, weights, asked.convention, e_v_lx);
     let [surfaces_lx, surfaces_se] = found.surfaces_lx;
-    // What comes straight from a luminous surface is not background, though no part of the sheets is it.
+    // What comes from a luminous surface or a highlight is not background, though no part of the sheets is it.
     let background_cd_m2 = (indirect.value - surfaces_lx) / PI;
     let sight = Sight {
         sources: found.counted.iter().map(|counted| counted.source).collect(),
-        e_v_lx: from_luminaires.value + indirect.value,
+        e_v_lx,
         e_direct_lx: from_luminaires.value + surfaces_lx,
         background: Nits(background_cd_m2),
         ..Sight::default()

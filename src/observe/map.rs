@@ -3,14 +3,20 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::emitters::sighted_coarsely;
+use crate::emitters::{Emitters, SeenPiece, Sighted, glimpsed_from, sighted_from};
+use crate::estimate::Estimate;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
 use crate::outcome::{IndexOutcome, Interval};
 use crate::project::{GlareMap, Project, World};
 use crate::query::{Demand, Kernel, Receiver};
-use crate::solve::{Effort, Method, Sheet, answer, prepare};
+use crate::scene::Scene;
+use crate::solve::{Effort, GlanceEffort, Mended, Method, Prepared, Sheet, answer, glances, mend, prepare};
 use crate::units::Undefined;
+
+/// Patches on large surfaces and links of each in the field of maps: finer than answers need.
+const PATCHES: f64 = 3000.0;
+const LINKS: u32 = 64;
 
 /// A computed map.
 #[derive(Clone, Debug)]
@@ -29,8 +35,10 @@ pub struct Mapped {
     pub azimuths_deg: Vec<f64>,
     /// How the values were computed.
     pub convention: String,
-    /// Blocks.
-    pub blocks: usize,
+    /// How they were computed besides.
+    pub method: MapMethod,
+    /// Whether something glossy is there.
+    pub glossy: bool,
     /// The eyes, row by row.
     pub eyes: Vec<MappedEye>,
 }
@@ -54,46 +62,179 @@ impl MappedEye {
     }
 }
 
-/// All maps of a project from `blocks` blocks.
-pub fn maps(project: &Project, blocks: usize) -> Vec<Mapped> {
-    project.worlds.iter().flat_map(|world| of_world(project, world, blocks)).collect()
+/// How a map is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MapMethod {
+    /// By look-ups in the stored field, see [`swift_eyes`].
+    Swift(GlanceEffort),
+    /// By this many blocks: every value unbiased, with an interval that holds.
+    Unbiased(usize),
 }
 
-fn of_world(project: &Project, world: &World, blocks: usize) -> Vec<Mapped> {
-    if world.glare_maps.is_empty() {
-        return Vec::new();
+impl Default for MapMethod {
+    fn default() -> Self {
+        Self::Swift(USUAL)
     }
+}
+
+/// What a map approximates, one sentence each.
+pub fn approximations(map: &Mapped) -> Vec<&'static str> {
+    let mut all = Vec::new();
+    if matches!(map.method, MapMethod::Swift(_)) {
+        all.push("Indirect light is looked up in a stored field that walks have mended on the mean over each patch; how it varies within a patch is left, and no interval holds it.");
+        all.push("A luminaire is wholly visible if its corners and 16 points of it are; luminous surfaces are seen in pieces of 0.02 sr.");
+    }
+    if map.glossy {
+        all.push("Highlights on glossy surfaces belong to the background.");
+    }
+    all
+}
+
+/// The usual effort of a swift map.
+pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 256, walks: 32 };
+
+/// All maps of a project.
+pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {
+    let mut found = Vec::new();
+    for world in project.worlds.iter().filter(|world| !world.glare_maps.is_empty()) {
+        let eyes = match method {
+            MapMethod::Swift(effort) => {
+                let demand = Demand::default();
+                let prepared = prepare(
+                    &world.scene,
+                    &demand,
+                    Method::Links,
+                    field_effort(&world.scene),
+                    project.accuracy.seed,
+                );
+                let of_map = |map: &GlareMap| {
+                    let mended = mend_for(map, &prepared, &effort);
+                    swift_eyes(project, world, map, &prepared, &mended, &effort)
+                };
+                world.glare_maps.iter().map(of_map).collect()
+            }
+            MapMethod::Unbiased(blocks) => unbiased_eyes(project, world, blocks, Effort::default()),
+        };
+        for (map, eyes) in world.glare_maps.iter().zip(eyes) {
+            let room = &world.rooms[map.room];
+            found.push(Mapped {
+                name: map.name.clone(),
+                room: room.name.clone(),
+                footprint: room.footprint.clone(),
+                light_scene: project.light_scenes[map.light_scene.unwrap_or(0)].name.clone(),
+                spacing: positions(map).1,
+                azimuths_deg: azimuths_deg(map),
+                convention: Convention::default().words(),
+                method,
+                glossy: world
+                    .scene
+                    .mesh
+                    .surfaces
+                    .iter()
+                    .any(|surface| world.scene.materials[surface.material].bsdf.lobe().is_some()),
+                eyes,
+            });
+        }
+    }
+    found
+}
+
+/// What the field costs in which maps look things up.
+pub fn field_effort(scene: &Scene) -> Effort {
+    let diffuse = |t: usize| scene.bsdf(t as u32).specular(1.0).is_none();
+    let triangles = 0..scene.mesh.triangles.len();
+    let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
+    Effort { patch_m2: Some(lit_m2 / PATCHES), links: LINKS, ..Effort::default() }
+}
+
+/// The field of `prepared` (of no demand) mended for what a map's eyes see: the rest of the solution.
+pub fn mend_for(map: &GlareMap, prepared: &Prepared, effort: &GlanceEffort) -> Mended {
+    mend(prepared, &positions(map).0, &sights(map), effort)
+}
+
+/// The eyes of a map by look-ups in a mended field.
+pub fn swift_eyes(
+    project: &Project,
+    world: &World,
+    map: &GlareMap,
+    prepared: &Prepared,
+    mended: &Mended,
+    effort: &GlanceEffort,
+) -> Vec<MappedEye> {
+    let (eyes, _) = positions(map);
+    let sights = sights(map);
+    let light_scene = &project.light_scenes[map.light_scene.unwrap_or(0)];
+    let weights = weights(world, light_scene, &world.rooms[map.room], false);
     let seed = project.accuracy.seed;
-    let grids: Vec<(Vec<DVec3>, [DVec3; 2])> = world.glare_maps.iter().map(positions).collect();
-    let mut demand = Demand { receivers: Vec::new(), rays: Vec::new(), flux: false };
-    for (map, (eyes, _)) in world.glare_maps.iter().zip(&grids) {
-        let kernels: Vec<Kernel> = sights(map).into_iter().map(|normal| Kernel::Planar { normal }).collect();
-        demand.receivers.extend(eyes.iter().map(|&point| Receiver {
-            point,
-            lift: DVec3::ZERO,
-            kernels: kernels.clone(),
-        }));
+    let indirect = glances(prepared, mended, &eyes, &sights, &weights, effort);
+    let emitters = prepared.emitters();
+    let alpha = 1.0 - project.accuracy.confidence;
+    let convention = Convention::default();
+    let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
+        let sighted = glimpsed_from(emitters, position, seed);
+        let views = sights.iter().enumerate().map(|(direction, &gaze)| {
+            let of_replicates: Vec<f64> =
+                indirect[number].chunks_exact(sights.len()).map(|lx| lx[direction]).collect();
+            let light = view::EyeLight {
+                from_luminaires: from_luminaires(&sighted, emitters, gaze, &weights),
+                indirect: Estimate::from_blocks(&of_replicates),
+            };
+            let asked = view::Asked { gaze, indices: &map.indices, convention };
+            let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
+            let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
+            (glare.ugr.interval(), further)
+        });
+        MappedEye { position, views: views.collect() }
+    };
+    eyes.par_iter().enumerate().map(eye).collect()
+}
+
+/// Illuminance of the plane of the eye straight from the luminaires that it sees.
+fn from_luminaires(sighted: &Sighted, emitters: &Emitters, gaze: DVec3, weights: &[f64]) -> Estimate {
+    let (mut value, mut variance) = (0.0, 0.0);
+    for one in &sighted.luminaires {
+        let weight = weights[emitters.sources[one.source].channel];
+        // Piece by piece: an opening overhead lies partly behind the eye.
+        let light = |piece: &SeenPiece| piece.normal_lx * piece.direction.dot(gaze).max(0.0);
+        let whole: f64 = match one.pieces.as_slice() {
+            [] => one.light.dot(gaze).max(0.0),
+            pieces => pieces.iter().map(light).sum(),
+        };
+        value += weight * whole;
+        variance += (weight * one.normal_lx.se * one.direction.dot(gaze).max(0.0)).powi(2);
     }
-    let prepared = prepare(&world.scene, &demand, Method::Links, Effort::default(), seed);
+    Estimate { value, se: f64::sqrt(variance), n: 0 }
+}
+
+/// The eyes of all maps of a world from blocks of unbiased answers.
+pub fn unbiased_eyes(project: &Project, world: &World, blocks: usize, effort: Effort) -> Vec<Vec<MappedEye>> {
+    let seed = project.accuracy.seed;
+    let mut demand = Demand::default();
+    for map in &world.glare_maps {
+        let kernels: Vec<Kernel> = sights(map).into_iter().map(|normal| Kernel::Planar { normal }).collect();
+        let receiver = |point: DVec3| Receiver { point, lift: DVec3::ZERO, kernels: kernels.clone() };
+        demand.receivers.extend(positions(map).0.into_iter().map(receiver));
+    }
+    let prepared = prepare(&world.scene, &demand, Method::Links, effort, seed);
     let sheets: Vec<Sheet> =
         (0..blocks as u64).into_par_iter().map(|block| answer(&prepared, block)).collect();
     let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
-    let first_rows = demand.first_rows();
+    let (first_rows, emitters) = (demand.first_rows(), prepared.emitters());
     let alpha = 1.0 - project.accuracy.confidence;
     let convention = Convention::default();
     let mut receiver = 0;
     let mut found = Vec::new();
-    for (map, (eyes, spacing)) in world.glare_maps.iter().zip(grids) {
+    for map in &world.glare_maps {
         let light_scene = &project.light_scenes[map.light_scene.unwrap_or(0)];
-        let room = &world.rooms[map.room];
-        let weights = weights(world, light_scene, room, false);
-        let sights = sights(map);
+        let weights = weights(world, light_scene, &world.rooms[map.room], false);
+        let (eyes, sights) = (positions(map).0, sights(map));
         let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
-            let sighted = sighted_coarsely(prepared.emitters(), position, seed);
+            let sighted = sighted_from(emitters, position, seed, false);
             let views = sights.iter().enumerate().map(|(direction, &gaze)| {
                 let row = first_rows[receiver + number] + direction;
-                let asked = view::Asked { gaze, row, indices: &map.indices, convention };
-                let glare = view::glare(&answers, prepared.emitters(), &sighted, &asked, &weights, alpha);
+                let light = view::EyeLight::of_row(&answers, row, &weights);
+                let asked = view::Asked { gaze, indices: &map.indices, convention };
+                let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
                 let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
                 (glare.ugr.interval(), further)
             });
@@ -101,17 +242,7 @@ fn of_world(project: &Project, world: &World, blocks: usize) -> Vec<Mapped> {
         };
         let computed: Vec<MappedEye> = eyes.par_iter().enumerate().map(eye).collect();
         receiver += eyes.len();
-        found.push(Mapped {
-            name: map.name.clone(),
-            room: room.name.clone(),
-            footprint: room.footprint.clone(),
-            light_scene: light_scene.name.clone(),
-            spacing,
-            azimuths_deg: azimuths_deg(map),
-            convention: convention.words(),
-            blocks,
-            eyes: computed,
-        });
+        found.push(computed);
     }
     found
 }

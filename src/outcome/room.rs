@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
+use super::Card;
 use crate::grid::Grid;
 use crate::norm::{Light, State};
 use crate::photometry::IntensityDistribution;
@@ -247,6 +248,8 @@ pub struct ViewpointOutcome {
     pub sources: Vec<GlareSourceOutcome>,
     /// Validity notes.
     pub notes: Vec<String>,
+    /// Its card, where one was made.
+    pub card: Option<Card>,
 }
 
 /// An index of glare beside UGR.

@@ -302,6 +302,8 @@ pub struct Viewpoint {
     pub indices: Vec<&'static str>,
     /// Light scene; `None`: the first.
     pub light_scene: Option<usize>,
+    /// Whether highlights in glossy planes are glare sources.
+    pub highlights: bool,
 }
 
 /// A grid of eyes that look in several directions each.

@@ -258,6 +258,7 @@ pub struct ViewpointSection {
     #[serde(default)]
     pub indices: Vec<At<String>>,
     pub light_scene: Option<At<String>>,
+    pub highlights: Option<At<bool>>,
 }
 
 #[derive(Debug, Deserialize)]

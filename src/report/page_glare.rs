@@ -1,15 +1,18 @@
 //! Glare in a room's chapter: the table method, observers, and what they see.
 
+use super::glare;
 use super::markup::{grid, list};
 use super::number;
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::{escape, put};
-use crate::outcome::{Interval, UgrTableOutcome, ViewpointOutcome};
+use crate::outcome::{Card, Interval, UgrTableOutcome, ViewpointOutcome};
 use crate::quantity::{Quantity, Statistic};
 use crate::units::Undefined;
 
 /// Glare sources listed for each observer.
 const SOURCES: usize = 5;
+/// Width of a card's picture, px.
+const PICTURE_PX: f64 = 240.0;
 
 /// UGR of the table method, a line per luminaire type.
 pub fn ugr_table(tables: &[UgrTableOutcome], lang: Lang) -> String {
@@ -207,9 +210,11 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
         .sources
         .iter()
         .take(SOURCES)
-        .map(|source| {
+        .enumerate()
+        .map(|(number, source)| {
+            let number = if view.card.is_some() { format!("{}. ", number + 1) } else { String::new() };
             vec![
-                escape(&source.label),
+                number + &escape(&source.label),
                 number::figures(lang, source.luminance_cd_m2, 3),
                 number::figures(lang, source.solid_angle_sr, 3),
                 number::fixed(lang, source.position_index, 2),
@@ -232,7 +237,8 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
         word(lang, Term::VisibleFraction),
         word(lang, Term::Share),
     ];
-    let mut html = grid("lrrrrr", &head, &rows);
+    let mut html = view.card.as_ref().map_or(String::new(), |card| self::card(view, card, lang));
+    html.push_str(&grid("lrrrrr", &head, &rows));
     let rest = view.sources.get(SOURCES..).unwrap_or_default();
     if !rest.is_empty() {
         let share = number::percent(lang, rest.iter().map(|source| source.share).sum());
@@ -249,6 +255,18 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
         );
     }
     html
+}
+
+/// The card's picture, and what would help.
+fn card(view: &ViewpointOutcome, card: &Card, lang: Lang) -> String {
+    let mut lines = view.ugr.as_ref().map_or(Vec::new(), |ugr| glare::remedies(card, ugr, lang));
+    lines.push(word(lang, Term::CardPicture).to_owned());
+    let lines = lines.iter().map(|line| escape(line)).collect::<Vec<_>>().join(" ");
+    format!(
+        "<figure>{}<figcaption class=\"note\"><b>{}</b> {lines}</figcaption></figure>\n",
+        glare::picture_svg(card, view.background_cd_m2, PICTURE_PX),
+        escape(&view.name),
+    )
 }
 
 /// An interval's ends, or the words for none.

@@ -184,6 +184,26 @@ fn viewpoint(name: &str, ugr: Result<Interval, Undefined>) -> ViewpointOutcome {
         background_cd_m2: 38.123456789,
         e_v_lx: 311.5,
         notes: vec!["ω of 2 sources lies outside 0.0003…0.1 sr".into()],
+        card: Some(card()),
+    }
+}
+
+/// Seven sources in a row; the picture is grey, darker below.
+fn card() -> crate::outcome::Card {
+    use crate::outcome::{PlacedSource, Remedy, Shift};
+    let placed = |i: u32| {
+        let x = 0.1 + 0.1 * f64::from(i);
+        PlacedSource {
+            centre: [x, 0.3],
+            outline: vec![[x - 0.03, 0.28], [x + 0.03, 0.28], [x + 0.03, 0.32], [x - 0.03, 0.32]],
+        }
+    };
+    let luminances = (0..16).map(|pixel| 80.0 / f64::from(1 + pixel / 4)).collect();
+    crate::outcome::Card {
+        picture: crate::image::LuminanceImage::new(4, 4, None, luminances),
+        sources: (0..7).map(placed).collect(),
+        dimmed: Some(Remedy { luminaire: "A @ row-1 #1".into(), ugr: 16.2, shift: None }),
+        moved: Some(Remedy { luminaire: "A @ row-1 #1".into(), ugr: 17.3, shift: Some(Shift::Left) }),
     }
 }
 

@@ -26,18 +26,18 @@ use crate::sphere;
 const MOST_STEPS: u32 = 100_000;
 
 /// Lobe rays of gather rays and walks survive as often as their lobe reflects …
-const ANALOG: f64 = 1.0;
+pub(super) const ANALOG: f64 = 1.0;
 /// … but lines of sight follow each lobe down to this weight: a highlight is what they ask for.
 const SIGHT: f64 = 0.02;
 
 /// Buffers reused from receiver to receiver.
-struct Desk {
+pub(super) struct Desk {
     /// Luminance per channel seen by the current ray.
-    seen: Vec<f64>,
+    pub(super) seen: Vec<f64>,
     /// Residual of the current walk per channel.
-    residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// Openings and landings met on the way.
-    sight: Sight,
+    pub(super) sight: Sight,
     /// Places from which the current walk still has to go on.
     pending: Vec<Landing>,
     /// Where the walk goes on from its current place.
@@ -47,7 +47,7 @@ struct Desk {
 }
 
 impl Desk {
-    fn new(channels: usize) -> Self {
+    pub(super) fn new(channels: usize) -> Self {
         Self {
             seen: vec![0.0; channels],
             residual: vec![0.0; channels],
@@ -275,7 +275,14 @@ pub(super) fn mirrored_openings(prepared: &Prepared, ray: &Ray, rng: &mut Rng, s
 }
 
 /// Looks along a ray: fills `desk.seen` with what is met and stored there (emission included).
-fn see(prepared: &Prepared, origin: DVec3, direction: DVec3, least: f64, rng: &mut Rng, desk: &mut Desk) {
+pub(super) fn see(
+    prepared: &Prepared,
+    origin: DVec3,
+    direction: DVec3,
+    least: f64,
+    rng: &mut Rng,
+    desk: &mut Desk,
+) {
     look(&prepared.emitters, origin, direction, least, rng, &mut desk.sight);
     desk.seen.copy_from_slice(&desk.sight.met);
     for landing in &desk.sight.landings {
@@ -288,7 +295,7 @@ fn see(prepared: &Prepared, origin: DVec3, direction: DVec3, least: f64, rng: &m
 
 /// Walks from the landings in `desk.sight` to the end; fills `desk.residual` with Σ R_v. Light places
 /// are walked from in proportion to their weight. `desk.seen` is kept.
-fn walk(prepared: &Prepared, rng: &mut Rng, desk: &mut Desk) {
+pub(super) fn walk(prepared: &Prepared, rng: &mut Rng, desk: &mut Desk) {
     desk.residual.fill(0.0);
     desk.pending.clear();
     for landing in &desk.sight.landings {

@@ -7,6 +7,7 @@ mod covered;
 mod double;
 pub mod far_field;
 mod flux;
+mod glance;
 mod highlights;
 mod lobe;
 mod local;
@@ -15,6 +16,7 @@ mod path;
 pub mod picture;
 mod prepare;
 mod refine;
+mod thumbnail;
 
 use glam::DVec3;
 
@@ -24,7 +26,9 @@ use crate::query::{Demand, Ray};
 use crate::rng::Rng;
 use crate::scene::Scene;
 
+pub use glance::{GlanceEffort, Mended, glances, mend};
 pub use local::{LocalEffort, LocalKernel, SeenForm};
+pub use thumbnail::thumbnail;
 
 /// Number of parts in which a sheet keeps every answer.
 pub const PARTS: usize = 3;

@@ -38,6 +38,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             directions,
             indices,
             light_scene,
+            highlights: section.highlights.as_ref().is_none_or(|wanted| *wanted.get_ref()),
         };
         let mut report = |context: &mut Context, message: String| {
             context.error(&name_span, message, "");
@@ -67,6 +68,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
                 directions: vec![sight(azimuth_deg, tilt_deg.unwrap_or(0.0))],
                 indices: Vec::new(),
                 light_scene: None,
+                highlights: true,
             };
             let mut report = |context: &mut Context, message: String| {
                 table.error(row, message, "", context);

@@ -102,7 +102,7 @@ fn centres(glare: &ImageGlare) -> Vec<[f64; 2]> {
     sums.into_iter().map(|[column, row, count]| [column / count, row / count]).collect()
 }
 
-fn base64(bytes: &[u8]) -> String {
+pub(super) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for triple in bytes.chunks(3) {

@@ -5,7 +5,7 @@ use super::super::ReportError;
 use super::super::number::fixed;
 use super::super::words::Lang;
 use super::super::xml::{escape, put};
-use crate::observe::map::Mapped;
+use crate::observe::map::{Mapped, approximations};
 use crate::outcome::Interval;
 use crate::units::Undefined;
 
@@ -72,14 +72,13 @@ fn cells(estimate: &Result<Interval, Undefined>) -> [String; 5] {
 /// One paragraph for the terminal.
 pub fn map_text(map: &Mapped) -> String {
     let mut text = format!(
-        "{} in {}: {} eyes at {} m, {} directions, light scene {}, {} blocks\n",
+        "{} in {}: {} eyes at {} m, {} directions, light scene {}\n",
         map.name,
         map.room,
         map.eyes.len(),
         fixed(LANG, map.eyes.first().map_or(0.0, |eye| eye.position.z), 2),
         map.azimuths_deg.len(),
         map.light_scene,
-        map.blocks,
     );
     let worst = map.eyes.iter().filter_map(|eye| Some((eye, eye.worst()?)));
     if let Some((eye, (direction, ugr))) = worst.max_by(|a, b| a.1.1.total_cmp(&b.1.1)) {
@@ -95,6 +94,9 @@ pub fn map_text(map: &Mapped) -> String {
         );
     }
     put(&mut text, format_args!("  convention: {}; initial flux\n", map.convention));
+    for sentence in approximations(map) {
+        put(&mut text, format_args!("  approximate: {sentence}\n"));
+    }
     text
 }
 
@@ -106,7 +108,8 @@ pub fn map_svg(map: &Mapped) -> String {
         (low, high) = (low.min(point), high.max(point));
     }
     let scale = (WIDTH - 2.0 * MARGIN) / (high.x - low.x).max(1e-9);
-    let height = (high.y - low.y) * scale + 2.0 * MARGIN + 50.0;
+    let legend_px = 50.0 + 14.0 * approximations(map).len() as f64;
+    let height = (high.y - low.y) * scale + 2.0 * MARGIN + legend_px;
     let px = |x: f64, y: f64| [MARGIN + (x - low.x) * scale, MARGIN + (high.y - y) * scale];
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height:.1}\" font-family=\"sans-serif\" \
@@ -142,7 +145,7 @@ pub fn map_svg(map: &Mapped) -> String {
             outline.join(" ")
         ),
     );
-    legend(map, height, &mut svg);
+    legend(map, height - legend_px + 6.0, &mut svg);
     svg.push_str("</svg>\n");
     svg
 }
@@ -173,8 +176,7 @@ fn rose(
     }
 }
 
-fn legend(map: &Mapped, height: f64, svg: &mut String) {
-    let y = height - 44.0;
+fn legend(map: &Mapped, y: f64, svg: &mut String) {
     for (step, colour) in COLOURS.iter().enumerate() {
         let x = MARGIN + 70.0 * step as f64;
         let label = match step {
@@ -199,7 +201,8 @@ fn legend(map: &Mapped, height: f64, svg: &mut String) {
         map.azimuths_deg.len(),
         map.light_scene
     );
-    for (line, text) in [named.as_str(), map.convention.as_str()].into_iter().enumerate() {
+    let lines = [named.as_str(), map.convention.as_str()].into_iter().chain(approximations(map));
+    for (line, text) in lines.enumerate() {
         put(
             svg,
             format_args!(

@@ -1,6 +1,7 @@
 //! What `gershun glare --image` prints and draws: text for people, JSON and CSV for machines, and a
 //! check picture in which every source can be found again.
 
+mod card;
 mod check;
 mod csv;
 mod json;
@@ -9,11 +10,12 @@ mod observed;
 mod png;
 mod text;
 
+pub use card::{card_svg, picture_svg, remedies};
 pub use check::{check_png, check_svg};
 pub use csv::indices_csv;
 pub use json::images_json;
 pub use map::{map_csv, map_svg, map_text};
-pub use observed::{compared_text, observed_csv, observed_json, observed_text};
+pub use observed::{compared_text, observed_csv, observed_json, observed_text, tables_text};
 pub use text::images_text;
 
 use crate::glare::of_image::ImageGlare;

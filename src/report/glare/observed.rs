@@ -6,8 +6,10 @@ use super::super::ReportError;
 use super::super::number::{figures, fixed};
 use super::super::words::Lang;
 use super::super::xml::{printable, put};
+use crate::glare::position_index::PositionModel;
+use crate::measure::glare_sources::{Convention, SourceModel};
 use crate::observe::Observed;
-use crate::outcome::Interval;
+use crate::outcome::{Interval, UgrTableOutcome};
 use crate::units::Undefined;
 
 const LANG: Lang = Lang::En;
@@ -84,8 +86,98 @@ pub fn compared_text(observed: &[Observed]) -> String {
         if most > least {
             put(&mut text, format_args!("  conventions differ by up to {}\n", fixed(LANG, most - least, 2)));
         }
+        let found: Vec<&Observed> = observed.iter().filter(|other| same(other, view)).collect();
+        for reason in reasons(&found) {
+            put(&mut text, format_args!("    {reason}\n"));
+        }
     }
     text
+}
+
+/// UGR of rooms by the table method, to set beside the observers'.
+pub fn tables_text(tables: &[(String, Vec<UgrTableOutcome>)]) -> String {
+    let mut text = String::new();
+    let value = |value: &Result<f64, Undefined>| match value {
+        Ok(ugr) => fixed(LANG, *ugr, 2),
+        Err(undefined) => format!("- ({undefined})"),
+    };
+    for (room, tables) in tables {
+        put(&mut text, format_args!("{}, table method\n", printable(room)));
+        for table in tables {
+            put(
+                &mut text,
+                format_args!(
+                    "  UGR {} crosswise, {} endwise   {}, spacing to height {}\n",
+                    value(&table.crosswise),
+                    value(&table.endwise),
+                    printable(&table.kind),
+                    fixed(LANG, table.shr, 2)
+                ),
+            );
+        }
+    }
+    text.push_str(
+        "  the table is of a standard room full of one luminaire type at regular spacing, seen from the middle of a \
+         wall; it knows neither these places nor what hides them\n",
+    );
+    text
+}
+
+/// Why the values of one view differ, with the figures.
+fn reasons(found: &[&Observed]) -> Vec<String> {
+    let by = |sources: SourceModel, position: PositionModel| {
+        let wanted = Convention { sources, position };
+        let view = found.iter().find(|view| view.convention == wanted)?;
+        Some(view.ugr.as_ref().ok()?.value)
+    };
+    let usual = by(SourceModel::Visible, PositionModel::Table);
+    let step = |other: Option<f64>, why: &str| {
+        let difference = other? - usual?;
+        Some(format!("{}: {why}", signed(difference)))
+    };
+    let mut lines: Vec<String> = [
+        step(
+            by(SourceModel::Visible, PositionModel::Levin),
+            "Levin's formula in place of the table, which ignores sources in its void cells",
+        ),
+        step(
+            by(SourceModel::Subdivided, PositionModel::Table),
+            "every part of an opening at its own position; L squared part by part",
+        ),
+        step(
+            by(SourceModel::Centre, PositionModel::Table),
+            "intensity and size as from far away: near luminaires are neither",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if let Some((view, image)) = found.iter().find_map(|view| Some((view, view.image.as_ref()?))) {
+        let sources = view.sheet.as_ref().map_or(0, |sheet| sheet.sources.len());
+        let ugr = match &image.ugr {
+            Ok(ugr) => fixed(LANG, *ugr, 2),
+            Err(undefined) => format!("- ({undefined})"),
+        };
+        lines.push(format!(
+            "image-based UGR {ugr} in a picture of {} x {} pixels: {} source(s) found where {sources} are known (what \
+             lies within 0.1 rad is one, what is under the threshold none), edges averaged in pixels, L_b {} for {} \
+             cd/m²",
+            image.pixels,
+            image.pixels,
+            image.found,
+            figures(LANG, image.background_cd_m2, 3),
+            figures(LANG, view.background_cd_m2, 3),
+        ));
+        if !image.convention.is_empty() {
+            lines.push(format!("  {}", image.convention));
+        }
+    }
+    lines
+}
+
+fn signed(difference: f64) -> String {
+    let sign = if difference < 0.0 { "" } else { "+" };
+    format!("{sign}{}", fixed(LANG, difference, 2))
 }
 
 fn estimate(value: &Result<Interval, Undefined>, decimals: usize) -> String {

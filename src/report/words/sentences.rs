@@ -47,6 +47,19 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "Area \"{}\": {} of {} points lie inside furniture and are left out.",
         "Область «{}»: {} из {} точек лежат внутри мебели и исключены.",
     ),
+    // Notes of a view.
+    (
+        "luminous surfaces: emitted light in pieces with their own position index; what they reflect belongs to the background",
+        "светящие поверхности: излучённый свет по частям, каждая со своим индексом позиции; отражённый ими свет отнесён к фону",
+    ),
+    (
+        "highlights in glossy planes are sources where they exceed {} E_v/π; others, and what is fainter, belong to the background",
+        "блики в глянцевых плоскостях – источники там, где их яркость выше {} E_v/π; прочие и более слабые отнесены к фону",
+    ),
+    (
+        "highlights on glossy surfaces belong to the background",
+        "блики на глянцевых поверхностях отнесены к фону",
+    ),
     // Biases of solving.
     (
         "Unshadowed light of openings is integrated numerically.",
@@ -59,12 +72,12 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ),
     ("{} % of the luminous flux (measured)", "{} % светового потока (измерено)"),
     (
-        "Specular images of bright surfaces other than luminaires are part of the background, not glare sources.",
-        "Зеркальные отражения ярких поверхностей, кроме светильников, отнесены к фону, а не к блёским источникам.",
+        "Images of bright surfaces that do not emit, and images by more than one reflection, are part of the background, not glare sources.",
+        "Отражения ярких, но не светящих поверхностей и отражения более чем однократные отнесены к фону, а не к блёским источникам.",
     ),
     (
-        "{} specular planes; images of luminaires by one reflection in them do count as glare sources",
-        "зеркальных плоскостей: {}; однократные отражения светильников в них учтены как блёские источники",
+        "{} specular planes; images of luminaires and luminous surfaces by one reflection in them do count as glare sources",
+        "зеркальных плоскостей: {}; однократные отражения светильников и светящих поверхностей в них учтены как блёские источники",
     ),
     (
         "Opal surfaces lit from behind are part of the background, not glare sources.",
@@ -75,8 +88,8 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "UGR наблюдателей занижен, если такая поверхность яркая",
     ),
     (
-        "Highlights of luminaires on glossy surfaces are part of the background, not glare sources.",
-        "Блики светильников на глянцевых поверхностях отнесены к фону, а не к блёским источникам.",
+        "Highlights on glossy surfaces that are dull, curved or small, and those of luminous surfaces, are part of the background, not glare sources.",
+        "Блики на тусклых, изогнутых и малых глянцевых поверхностях и блики светящих поверхностей отнесены к фону, а не к блёским источникам.",
     ),
     ("observers' UGR reads low where one dazzles", "UGR наблюдателей занижен там, где блик слепит"),
     (

@@ -1,0 +1,207 @@
+//! What points get from all around, by many cheap look-ups in the frozen field: for maps of many eyes, of
+//! which each looks in many directions. All directions of an eye share their rays, and what walks find the
+//! field to lack on a patch is shared by all eyes that see it.
+//!
+//! The field errs where a patch is partly hidden under furniture, say. Walks that start where the eyes'
+//! own rays arrive find by how much, on the mean over what is seen of each patch; what is left is the
+//! light's variation within patches.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::answer::{ANALOG, Desk, see, walk};
+use super::look::{Landing, Sight, add_emission, look};
+use super::{Prepared, highlights};
+use crate::rng::{Rng, Stratified};
+use crate::sphere;
+
+/// Streams of look-ups and of walks; blocks use 1, 2, …, the field 0, pictures and eyes the last two.
+const STREAMS: [u64; 2] = [u64::MAX - 2, u64::MAX - 4];
+/// Rays drawn about highlights, as a share of all, where a glossy plane reflects luminaires.
+const AIMED: f64 = 0.25;
+/// Density of directions over the sphere, 1/sr.
+const UNIFORM: f64 = 0.25 / PI;
+
+/// How much glances cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GlanceEffort {
+    /// Independent replicates: look-ups and walks are split among them.
+    pub replicates: u32,
+    /// Rays of each replicate.
+    pub rays: u32,
+    /// Walks for each replicate and point.
+    pub walks: u32,
+}
+
+/// The field with what walks found it to lack, for every channel.
+#[derive(Clone, Debug)]
+pub struct Mended {
+    /// A table for each replicate: `[side · channels + channel]`, cd/m².
+    tables: Vec<Vec<f64>>,
+}
+
+/// Mends the field of `prepared` by walks from what is seen at `points` on planes with these normals. A
+/// replicate has walks of its own but where they never reached a patch that others did.
+pub fn mend(prepared: &Prepared, points: &[DVec3], normals: &[DVec3], effort: &GlanceEffort) -> Mended {
+    let Some(field) = &prepared.field else { return Mended { tables: Vec::new() } };
+    let found: Vec<Vec<Lack>> = points
+        .par_iter()
+        .enumerate()
+        .map(|(item, &point)| lacks(prepared, point, normals, effort, item as u64))
+        .collect();
+    let stored: Vec<&[f64]> = (0..field.patches().sides()).map(|side| field.at(side)).collect();
+    let channels = prepared.scene.channels.len();
+    Mended { tables: mended(&stored, channels, found.iter().flatten(), effort.replicates as usize) }
+}
+
+/// Indirect illuminances in lx on planes with several normals at many points, with a factor for each
+/// channel: for each point `[replicate · normals + normal]`.
+pub fn glances(
+    prepared: &Prepared,
+    mended: &Mended,
+    points: &[DVec3],
+    normals: &[DVec3],
+    weights: &[f64],
+    effort: &GlanceEffort,
+) -> Vec<Vec<f64>> {
+    let weighted = |channels: &[f64]| channels.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
+    let of_table = |table: &Vec<f64>| table.chunks_exact(weights.len().max(1)).map(weighted).collect();
+    let tables: Vec<Vec<f64>> = mended.tables.iter().map(of_table).collect();
+    points
+        .par_iter()
+        .enumerate()
+        .map(|(item, &point)| look_ups(prepared, point, normals, weights, effort, &tables, item as u64))
+        .collect()
+}
+
+/// What one walk found the field to lack on a patch side, cd/m² for each channel.
+struct Lack {
+    side: u32,
+    replicate: u32,
+    luminance: Vec<f64>,
+}
+
+fn side(prepared: &Prepared, landing: &Landing) -> usize {
+    let field = prepared.field.as_ref().expect("glances need a field");
+    field.patches().side_at(landing.triangle, landing.barycentric, landing.front)
+}
+
+/// Behind an eye that looks one way only there is nothing to see.
+fn in_sight(normals: &[DVec3], direction: DVec3) -> bool {
+    normals.iter().any(|normal| normal.dot(direction) > 0.0)
+}
+
+fn lacks(
+    prepared: &Prepared,
+    point: DVec3,
+    normals: &[DVec3],
+    effort: &GlanceEffort,
+    item: u64,
+) -> Vec<Lack> {
+    let mut rng = Rng::new(prepared.seed, STREAMS[1], item);
+    let mut desk = Desk::new(prepared.scene.channels.len());
+    let ways = Stratified::new(&mut rng);
+    let mut found = Vec::new();
+    for number in 0..effort.replicates * effort.walks {
+        let direction = sphere::uniform_sphere(ways.point(number, &mut rng));
+        if !in_sight(normals, direction) {
+            continue;
+        }
+        see(prepared, point, direction, ANALOG, &mut rng, &mut desk);
+        let landings = std::mem::take(&mut desk.sight.landings);
+        for landing in &landings {
+            desk.sight.landings = vec![Landing { weight: 1.0, ..*landing }];
+            walk(prepared, &mut rng, &mut desk);
+            let side = side(prepared, landing) as u32;
+            let luminance = desk.residual.clone();
+            found.push(Lack { side, replicate: number % effort.replicates, luminance });
+        }
+    }
+    found
+}
+
+/// The field with what was found to lack, on the mean over the walks of a patch: a table a replicate.
+fn mended<'l>(
+    stored: &[&[f64]],
+    channels: usize,
+    lacks: impl Iterator<Item = &'l Lack>,
+    replicates: usize,
+) -> Vec<Vec<f64>> {
+    let (mut light, mut counts) = (
+        vec![vec![0.0; stored.len() * channels]; replicates + 1],
+        vec![vec![0.0f64; stored.len()]; replicates + 1],
+    );
+    for lack in lacks {
+        let side = lack.side as usize;
+        for table in [lack.replicate as usize, replicates] {
+            counts[table][side] += 1.0;
+            let sums = &mut light[table][side * channels..(side + 1) * channels];
+            for (sum, lacking) in sums.iter_mut().zip(&lack.luminance) {
+                *sum += lacking;
+            }
+        }
+    }
+    let of_replicate = |own: usize| -> Vec<f64> {
+        let of_side = |side: usize| {
+            let table = if counts[own][side] > 0.0 { own } else { replicates };
+            let count = counts[table][side].max(1.0);
+            let sums = &light[table][side * channels..(side + 1) * channels];
+            stored[side].iter().zip(sums).map(move |(stored, sum)| stored + sum / count)
+        };
+        (0..stored.len()).flat_map(of_side).collect()
+    };
+    (0..replicates).map(of_replicate).collect()
+}
+
+fn look_ups(
+    prepared: &Prepared,
+    point: DVec3,
+    normals: &[DVec3],
+    weights: &[f64],
+    effort: &GlanceEffort,
+    tables: &[Vec<f64>],
+    item: u64,
+) -> Vec<f64> {
+    let mut rng = Rng::new(prepared.seed, STREAMS[0], item);
+    let mut sight = Sight::new(prepared.scene.channels.len());
+    let mut met = vec![0.0; prepared.scene.channels.len()];
+    let mut bundles = Vec::new();
+    let count = normals.len();
+    let cosines = |direction: DVec3| normals.iter().map(move |normal| normal.dot(direction).max(0.0));
+    prepared.highlights.about(&prepared.emitters, point, |way| cosines(way).sum(), &mut bundles);
+    let aimed = if bundles.is_empty() { 0 } else { (AIMED * f64::from(effort.rays)).ceil() as u32 };
+    let mut found = vec![0.0; effort.replicates as usize * count];
+    for (replicate, table) in tables.iter().enumerate() {
+        let (ways, aims) = (Stratified::new(&mut rng), Stratified::new(&mut rng));
+        for ray in 0..effort.rays + aimed {
+            let direction = if ray < effort.rays {
+                // Uniform, not by the cosines: strata of two numbers pay more than they would.
+                sphere::uniform_sphere(ways.point(ray, &mut rng))
+            } else {
+                highlights::draw(&bundles, aims.point(ray - effort.rays, &mut rng))
+            };
+            if !in_sight(normals, direction) {
+                continue;
+            }
+            let mut mixture = f64::from(effort.rays) * UNIFORM;
+            if aimed > 0 {
+                mixture += f64::from(aimed) * highlights::density(&bundles, direction);
+            }
+            look(&prepared.emitters, point, direction, ANALOG, &mut rng, &mut sight);
+            met.copy_from_slice(&sight.met);
+            let mut luminance = 0.0;
+            for landing in &sight.landings {
+                add_emission(prepared.scene, landing.triangle, &mut met, landing.weight);
+                luminance += landing.weight * table[side(prepared, landing)];
+            }
+            luminance += met.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
+            let sums = &mut found[replicate * count..(replicate + 1) * count];
+            for (sum, cosine) in sums.iter_mut().zip(cosines(direction)) {
+                *sum += cosine * luminance / mixture;
+            }
+        }
+    }
+    found
+}

@@ -91,11 +91,11 @@ pub fn value_beside(lang: Lang, quantity: Quantity, statistic: Statistic, shown:
 /// third decimal, or it would be said to be another limit.
 pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -> String {
     if statistic.is_ratio() {
-        let exact = |decimals: &usize| {
-            let scale = 10_f64.powi(*decimals as i32);
+        let exact = |decimals: &i32| {
+            let scale = 10_f64.powi(*decimals);
             ((limit * scale).round() / scale - limit).abs() < 1e-9
         };
-        return fixed(lang, limit, (2..=4).find(exact).unwrap_or(2));
+        return fixed(lang, limit, (2..=4).find(exact).unwrap_or(2) as usize);
     }
     let whole = quantity.is_single() && limit.fract().abs() < 1e-9;
     if whole { fixed(lang, limit, 0) } else { value(lang, quantity, statistic, limit) }

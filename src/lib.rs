@@ -4,6 +4,7 @@
 //! `docs/architecture.md` is the map.
 
 pub mod assemble;
+pub mod digest;
 pub mod emitters;
 pub mod estimate;
 pub mod field;

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use sha2::{Digest, Sha256};
 
+use crate::digest::Hash;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::{Simd, Tracer};
 use crate::luminaire::Luminaire;
@@ -156,18 +156,18 @@ impl Scene {
     /// SHA-256 of everything that decides how light goes: geometry, materials and luminaires at initial
     /// flux. Cameras, viewpoints, areas, light scenes and norms do not enter.
     pub fn fingerprint(&self) -> String {
-        let mut hasher = Sha256::new();
+        let mut hash = Hash::default();
         for position in &self.mesh.positions {
-            position.to_array().iter().for_each(|x| hasher.update(x.to_bits().to_le_bytes()));
+            position.to_array().iter().for_each(|x| hash.add(x.to_bits().to_le_bytes()));
         }
         for triangle in &self.mesh.triangles {
-            triangle.vertices.iter().for_each(|vertex| hasher.update(vertex.to_le_bytes()));
-            hasher.update(triangle.surface.to_le_bytes());
+            triangle.vertices.iter().for_each(|vertex| hash.add(vertex.to_le_bytes()));
+            hash.add(triangle.surface.to_le_bytes());
         }
         // Debug prints numbers to the last bit.
         let mut add = |text: String| {
-            hasher.update((text.len() as u64).to_le_bytes());
-            hasher.update(text);
+            hash.add((text.len() as u64).to_le_bytes());
+            hash.add(text);
         };
         add(format!("{:?} {:?} {:?}", self.mesh.surfaces, self.materials, self.channels));
         for (index, luminaire) in self.luminaires.iter().enumerate() {
@@ -182,7 +182,7 @@ impl Scene {
                 luminaire.dim, luminaire.group, luminaire.body
             ));
         }
-        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hash.hex()
     }
 
     /// The scattering model of triangle `index`.

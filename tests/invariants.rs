@@ -272,6 +272,7 @@ const ORDER: &[&str] = &[
     "rng",
     "sphere",
     "units",
+    "digest",
 ];
 
 fn rank(module: &str) -> Option<usize> {

@@ -11,6 +11,8 @@ use crate::scene::Scene;
 
 /// Marks a node whose four children follow each other; the rest of the number is the first of them.
 const SPLIT: u32 = 1 << 31;
+/// Weights of the second and third corner at a triangle's centre.
+const CENTRE: [f64; 2] = [1.0 / 3.0; 2];
 /// Smallest patch that is split further, as a share of its triangle's edge.
 const SMALLEST_EDGE: f64 = 1e-4;
 
@@ -259,7 +261,6 @@ impl Patches {
             let normal = mesh.normal_and_area(triangle as usize).0;
             Place { point: a + (b - a) * s + (c - a) * t, normal }
         };
-        const CENTRE: [f64; 2] = [1.0 / 3.0; 2];
         if let [Member { triangle, part, .. }] = members {
             return (0..4)
                 .map(|quarter| (place(*triangle, part.inner(quarter, 2).at(CENTRE)), 0.25))

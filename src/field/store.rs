@@ -4,9 +4,9 @@
 use glam::DVec3;
 use safetensors::tensor::{Dtype, Metadata, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::{LuminanceField, Patches, Reached};
+use crate::digest::Hash;
 use crate::scene::{Channel, Scene};
 
 /// Name of the file in a result folder.
@@ -192,9 +192,9 @@ fn channel_name(scene: &Scene, channel: &Channel) -> String {
 }
 
 fn checksum<'b>(parts: impl Iterator<Item = &'b [u8]>) -> String {
-    let mut hasher = Sha256::new();
-    parts.for_each(|part| hasher.update(part));
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    let mut hash = Hash::default();
+    parts.for_each(|part| hash.add(part));
+    hash.hex()
 }
 
 /// A stored file that was opened and whose checksum fits.

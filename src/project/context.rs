@@ -1,15 +1,14 @@
 //! What loading carries along: the text that spans point into, mistakes and notes met so far, and
 //! the one door through which files are read (inside the project's folder unless allowed).
 
-use std::fmt::Write;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
-use sha2::{Digest, Sha256};
 use toml::Spanned;
 
 use super::InputFile;
 use super::diagnostics::{Diagnostic, Place};
+use crate::digest::sha256;
 use crate::geometry::trace::Simd;
 
 /// Largest photometric, CSV or norm file.
@@ -133,11 +132,7 @@ impl Context {
         if self.inputs.iter().any(|input| input.path == path) {
             return;
         }
-        let mut sha256 = String::with_capacity(64);
-        for byte in Sha256::digest(bytes) {
-            write!(sha256, "{byte:02x}").expect("a String takes everything");
-        }
-        self.inputs.push(InputFile { path: path.to_owned(), sha256 });
+        self.inputs.push(InputFile { path: path.to_owned(), sha256: sha256(bytes) });
     }
 
     /// A number within a closed range; NaN is outside of every range.

@@ -6,7 +6,8 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use super::ReportError;
-use super::provenance::{listed_files, sha256};
+use super::provenance::listed_files;
+use crate::digest::sha256;
 
 /// The file that lists all others with their hashes.
 pub const MANIFEST: &str = "provenance.json";

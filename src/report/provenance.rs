@@ -3,11 +3,10 @@
 //! knows its own files.
 
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 
 use super::ReportError;
 use super::json::{VERSION, bytes};
-use super::xml::put;
+use crate::digest::sha256;
 use crate::outcome::Outcome;
 use crate::project::InputFile;
 
@@ -66,13 +65,4 @@ pub fn listed_files(provenance: &[u8]) -> Vec<(String, String)> {
     rows.iter()
         .filter_map(|row| Some((row["path"].as_str()?.to_owned(), row["sha256"].as_str()?.to_owned())))
         .collect()
-}
-
-/// SHA-256 in hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    let mut text = String::new();
-    for byte in Sha256::digest(bytes) {
-        put(&mut text, format_args!("{byte:02x}"));
-    }
-    text
 }

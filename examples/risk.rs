@@ -18,13 +18,14 @@ use gershun::project::{
     AreaKind, AreaShape, AreaSpec, CustomRequirement, CustomSubject, LoadOptions, Project, Viewpoint, load,
 };
 use gershun::quantity::{Quantity, Statistic};
+use gershun::solve::Effort;
 use gershun::{Settings, Watch, run};
 use glam::DVec3;
 
 /// Blocks after which the coverage of intervals is counted.
 const COVERAGE_BLOCKS: usize = 64;
 /// Blocks of the long run.
-const TRUTH_BLOCKS: usize = 8_192;
+const TRUTH_BLOCKS: usize = 4_096;
 /// Blocks at which a run gives up: looks after 32, 64, 128 and 256.
 const MOST_BLOCKS: usize = 256;
 
@@ -58,8 +59,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             });
         }
     }
-    let settings = Settings { most_blocks: MOST_BLOCKS, ..Settings::default() };
-    let fixed = Settings { exact_blocks: Some(vec![COVERAGE_BLOCKS]), ..Settings::default() };
+    let settings = Settings { most_blocks: MOST_BLOCKS, effort: effort(), ..Settings::default() };
+    let fixed =
+        Settings { exact_blocks: Some(vec![COVERAGE_BLOCKS]), effort: effort(), ..Settings::default() };
     let (mut counts, mut families) = (vec![[0usize; 3]; limits.len()], 0usize);
     let mut covered = vec![[0usize; 3]; JUDGED.len()];
     for seed in 1..=seeds {
@@ -94,6 +96,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     write(seeds, &truth, &limits, &counts, families, &covered, 1.0 - project.accuracy.confidence)
 }
 
+/// The usual effort, but for the flux tally, on which nothing here is judged.
+fn effort() -> Effort {
+    Effort { particles: 16, ..Effort::default() }
+}
+
 /// The box of the example scenes with a plane, an observer, and no norm.
 fn small_room() -> Result<Project, Box<dyn Error>> {
     let mut project =
@@ -109,7 +116,7 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         modified: None,
         light_scene: None,
         shape: AreaShape::Rect { origin: DVec3::new(0.2, 0.2, 0.75), u: DVec3::X * 4.6, v: DVec3::Y * 3.6 },
-        rule: GridRule::Count([6, 4]),
+        rule: GridRule::Count([4, 3]),
         border_m: 0.0,
         quantities: vec![Quantity::Horizontal, Quantity::Cylindrical],
         written: None,
@@ -135,7 +142,8 @@ fn solve(project: &Project, settings: &Settings) -> Result<Outcome, Box<dyn Erro
 fn truth(project: &mut Project) -> Result<Vec<f64>, Box<dyn Error>> {
     project.accuracy.seed = u64::MAX;
     project.worlds[0].requirements.clear();
-    let settings = Settings { exact_blocks: Some(vec![TRUTH_BLOCKS]), ..Settings::default() };
+    let settings =
+        Settings { exact_blocks: Some(vec![TRUTH_BLOCKS]), effort: effort(), ..Settings::default() };
     let outcome = solve(project, &settings)?;
     JUDGED.iter().map(|judged| Ok(found(&outcome, judged)?.value)).collect()
 }

@@ -67,7 +67,7 @@ Examples:
 /// Formats of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FormatChoice {
-    /// OpenEXR: cd/m² in channel Y, standard errors in channel se
+    /// OpenEXR: cd/m² in channel Y, standard errors in channel se (without --blocks: of glossy lobes alone)
     Exr,
     /// Radiance HDR with VIEW and EXPOSURE
     Hdr,

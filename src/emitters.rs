@@ -20,7 +20,7 @@ use crate::luminaire::Luminaire;
 use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
-pub use direct::{TOLERANCE, unshadowed};
+pub use direct::{TOLERANCE, contour, unshadowed};
 pub use glimpsed::glimpsed_from;
 pub use glints::{Glint, GlintPiece, glints_from};
 pub use images::{Mirror, planes};

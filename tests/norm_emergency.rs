@@ -147,3 +147,16 @@ fn without_emergency_output_it_is_dark_and_that_is_said() {
         .expect_err("too much");
     assert!(errors[0].message.contains("emergency output is 1.200") && errors[0].line == 12, "{errors:?}");
 }
+
+/// Catches: an intensity judged under a light scene in which the luminaire is off, or at another level.
+#[test]
+fn the_intensity_is_that_of_the_scene_in_which_the_route_is_judged() {
+    let text = ROUTE
+        .replace("[norm]", "[light_scenes]\nday = { N = 1.0 }\nnight = { E = 0.5 }\n\n[norm]")
+        .replace("name = \"Centre line\"", "name = \"Centre line\"\nlight_scene = \"night\"");
+    let outcome = solved(&text);
+    let own = required(&outcome, Quantity::Intensity, Statistic::Max);
+    assert_eq!(own.light_scene, "night");
+    let value = *own.value.as_ref().expect("a value");
+    assert!((value - 1000.0 * 0.02 * 0.5).abs() < 1e-9, "{value}");
+}

@@ -3,6 +3,7 @@
 pub(crate) mod check;
 mod furniture;
 pub(crate) mod glb;
+mod lm63;
 pub(crate) mod photometry;
 mod quadrant;
 pub(crate) mod room;

@@ -1,8 +1,7 @@
 //! The two photometric files. Intensities follow simple made-up formulas, scaled so that the flux
 //! of the *printed* values, interpolated linearly, is the rated one.
 
-use std::fmt::Write;
-
+use super::lm63::{self, Label};
 use super::quadrant::{Quadrant, tabulated};
 
 /// Edge of the panel's luminous square, m.
@@ -93,41 +92,14 @@ pub fn panel_ldt() -> String {
 
 /// LM-63-2002 text of the louvre luminaire.
 pub fn louvre_ies() -> String {
-    let louvre = louvre();
-    let [length, width] = LOUVRE_M;
-    let mut lines: Vec<String> = [
-        "IESNA:LM-63-2002",
-        "[TEST] computed, not measured",
-        "[TESTLAB] none",
-        "[ISSUEDATE] 2026-01-01",
-        "[MANUFAC] gershun example scenes",
-        "[LUMCAT] GL-1200",
-        "[LUMINAIRE] Louvre 1200 x 200, 30 W",
-        "[LAMPCAT] LED",
-        "[LAMP] LED 4000 K",
-        "TILT=NONE",
-    ]
-    .map(String::from)
-    .into();
-    let (gammas, planes) = (louvre.gamma_deg.len(), louvre.c_deg.len());
-    lines.push(format!("1 {LOUVRE_LM} 1 {gammas} {planes} 1 2 {width} {length} 0"));
-    lines.push("1 1 30".into());
-    let mut row = |values: &[f64], decimals: usize| {
-        for chunk in values.chunks(13) {
-            let mut line = String::new();
-            for value in chunk {
-                let gap = if line.is_empty() { "" } else { " " };
-                write!(line, "{gap}{value:.decimals$}").expect("a string takes all text");
-            }
-            lines.push(line);
-        }
+    let label = Label {
+        catalogue: "GL-1200",
+        title: "Louvre 1200 x 200, 30 W",
+        flux_lm: LOUVRE_LM,
+        power_w: 30.0,
+        opening_m: LOUVRE_M,
     };
-    row(&louvre.gamma_deg, 1);
-    row(&louvre.c_deg, 0);
-    for plane in &louvre.intensity {
-        row(plane, 1);
-    }
-    lines.join("\r\n") + "\r\n"
+    lm63::text(&label, &louvre())
 }
 
 /// Flux in lm of a file's text, read and summed by other means than it was written: midpoint rule

@@ -2,13 +2,15 @@
 //! from the crate's root. Intensities follow simple made-up formulas; the flux of the *printed*
 //! values, interpolated linearly, is the rated one.
 
+#[path = "../make_office/lm63.rs"]
+mod lm63;
 #[path = "../make_office/quadrant.rs"]
 #[allow(dead_code, reason = "the office uses more of it")]
 mod quadrant;
 
-use std::fmt::Write as _;
 use std::path::Path;
 
+use lm63::Label;
 use quadrant::{Quadrant, tabulated};
 
 /// A luminaire of our own making.
@@ -114,39 +116,14 @@ impl Lamp {
 
     /// LM-63-2002 text.
     pub fn ies(&self) -> String {
-        let quadrant = self.quadrant();
-        let [length_m, width_m] = self.opening_m;
-        let mut lines: Vec<String> = [
-            "IESNA:LM-63-2002",
-            "[TEST] computed, not measured",
-            "[TESTLAB] none",
-            "[ISSUEDATE] 2026-01-01",
-            "[MANUFAC] gershun example scenes",
-            "[LUMCAT] none",
-        ]
-        .map(String::from)
-        .into();
-        lines.push(format!("[LUMINAIRE] {}", self.title));
-        lines.extend(["[LAMPCAT] LED", "[LAMP] LED 4000 K", "TILT=NONE"].map(String::from));
-        let (gammas, planes) = (quadrant.gamma_deg.len(), quadrant.c_deg.len());
-        lines.push(format!("1 {} 1 {gammas} {planes} 1 2 {width_m} {length_m} 0", self.flux_lm));
-        lines.push(format!("1 1 {}", self.power_w));
-        let mut row = |values: &[f64], decimals: usize| {
-            for chunk in values.chunks(13) {
-                let mut line = String::new();
-                for value in chunk {
-                    let gap = if line.is_empty() { "" } else { " " };
-                    write!(line, "{gap}{value:.decimals$}").expect("a string takes all text");
-                }
-                lines.push(line);
-            }
+        let label = Label {
+            catalogue: "none",
+            title: self.title,
+            flux_lm: self.flux_lm,
+            power_w: self.power_w,
+            opening_m: self.opening_m,
         };
-        row(&quadrant.gamma_deg, 1);
-        row(&quadrant.c_deg, 0);
-        for plane in &quadrant.intensity {
-            row(plane, 1);
-        }
-        lines.join("\r\n") + "\r\n"
+        lm63::text(&label, &self.quadrant())
     }
 
     /// Flux in lm of the file's text, read back and summed by the closed form of its interpolant.

@@ -18,6 +18,9 @@ const AGREEMENT: f64 = 1e-4;
 /// agree by chance across a bend of the intensity table.
 const NEAR: f64 = 16.0;
 const DEEPEST: u32 = 7;
+/// Within half of its radius an opening is first split to pieces no larger than their distance: a rule over a
+/// larger one may miss the bright spot that the receiver sees. Down to 2⁻¹⁶ of its edge.
+const CLOSE: u32 = 16;
 
 /// Two- and three-point Gauss–Legendre nodes and weights on [0, 1].
 const GAUSS2: [(f64, f64); 2] = [(0.211_324_865_405_187_13, 0.5), (0.788_675_134_594_812_9, 0.5)];
@@ -53,16 +56,18 @@ pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
             corners.iter().map(|&p| source.position + source.world_from_luminaire * p - point).collect();
         return luminance * contour(&corners, *normal);
     }
+    let place = source.place(point);
+    let close = source.position.distance(point) < 2.0 * source.radius_m;
     let cut = matches!(kernel, Kernel::Planar { normal }
         if normal.dot(source.position - point).abs() < source.radius_m);
     let near = u32::from(source.position.distance(point) < NEAR * source.radius_m);
     let pieces = luminaire.kind.opening.pieces();
     if pieces > 0 {
         // Piece by piece, since a rule across an edge would see a jump.
-        let place = source.place(point);
         let least = if cut { 4 } else { near };
         let shone = |piece: usize| {
-            integral(least, &|u| {
+            let at = |u: [f64; 2]| source.opening.shine_of_piece(piece, place, u).map(|shine| shine.at);
+            integral(least, &Nearby { close, place, at: &at }, &|u| {
                 let shine = source.opening.shine_of_piece(piece, place, u);
                 let arrival = shine.and_then(|shine| emitters.arrival_from(source, point, shine, |_| true));
                 arrival.map_or(0.0, |arrival| arrival.normal_lx * kernel.response(arrival.direction))
@@ -73,13 +78,78 @@ pub fn unshadowed(emitters: &Emitters, source: &Source, point: DVec3, kernel: &K
     if let (true, Kernel::Planar { normal }) = (cut, kernel) {
         return across_horizon(emitters, source, point, *normal, &value);
     }
-    integral(near, &value)
+    let at = |u: [f64; 2]| Some(source.opening.plane_point(u));
+    integral(near, &Nearby { close, place, at: &at }, &value)
 }
 
-/// ∫ over the unit square, split at least `least` times.
-fn integral(least: u32, value: &impl Fn([f64; 2]) -> f64) -> f64 {
-    let whole = product(&GAUSS3, [0.0, 0.0], 1.0, value);
-    adaptive([0.0, 0.0], 1.0, whole, (whole * AGREEMENT).max(1e-12), [0, least], value)
+/// The receiver beside the surface that is integrated.
+struct Nearby<'a, At: Fn([f64; 2]) -> Option<DVec3>> {
+    /// Near enough to look closer.
+    close: bool,
+    /// The receiver, luminaire frame.
+    place: DVec3,
+    /// The point of the surface, luminaire frame.
+    at: &'a At,
+}
+
+impl<At: Fn([f64; 2]) -> Option<DVec3>> Nearby<'_, At> {
+    /// Whether a square of the unit square is larger than its distance times `factor`.
+    fn is_large(&self, [u, v]: [f64; 2], edge: f64, factor: f64) -> bool {
+        let point =
+            |i: u32, j: u32| (self.at)([u + 0.5 * edge * f64::from(i), v + 0.5 * edge * f64::from(j)]);
+        let Some(middle) = point(1, 1) else { return false };
+        let (mut radius_m, mut distance_m) = (0.0_f64, f64::INFINITY);
+        for k in 0..9 {
+            if let Some(at) = point(k / 3, k % 3) {
+                radius_m = radius_m.max(at.distance(middle));
+                distance_m = distance_m.min(at.distance(self.place));
+            }
+        }
+        // No point of the square is farther from those nine than half of the radius.
+        distance_m < (factor + 0.5) * radius_m
+    }
+
+    /// The squares of at most their distance, with their depths; none where the whole is no larger.
+    fn squares(&self) -> Vec<([f64; 2], f64, u32)> {
+        if !(self.close && self.is_large([0.0; 2], 1.0, 0.5)) {
+            return Vec::new();
+        }
+        let (mut done, mut open) = (Vec::new(), vec![([0.0; 2], 1.0, 0)]);
+        while let Some((corner, edge, depth)) = open.pop() {
+            if depth == CLOSE || !self.is_large(corner, edge, 1.0) {
+                done.push((corner, edge, depth));
+            } else {
+                open.extend(quarters(corner, edge).map(|corner| (corner, 0.5 * edge, depth + 1)));
+            }
+        }
+        done
+    }
+}
+
+fn quarters([u, v]: [f64; 2], edge: f64) -> [[f64; 2]; 4] {
+    let half = 0.5 * edge;
+    [[0.0, 0.0], [half, 0.0], [0.0, half], [half, half]].map(|shift| [u + shift[0], v + shift[1]])
+}
+
+/// ∫ over the unit square, split at least `least` times, and finely where the receiver is close.
+fn integral<At: Fn([f64; 2]) -> Option<DVec3>>(
+    least: u32,
+    nearby: &Nearby<At>,
+    value: &impl Fn([f64; 2]) -> f64,
+) -> f64 {
+    let squares = nearby.squares();
+    if squares.is_empty() {
+        let whole = product(&GAUSS3, [0.0, 0.0], 1.0, value);
+        return adaptive([0.0, 0.0], 1.0, whole, (whole * AGREEMENT).max(1e-12), [0, least, DEEPEST], value);
+    }
+    let fine: Vec<f64> =
+        squares.iter().map(|(corner, edge, _)| product(&GAUSS3, *corner, *edge, value)).collect();
+    let whole: f64 = fine.iter().sum();
+    let of_square = |((corner, edge, depth), fine): (&([f64; 2], f64, u32), f64)| {
+        let tolerance = (whole * AGREEMENT * edge).max(1e-12);
+        adaptive(*corner, *edge, fine, tolerance, [*depth, least, DEEPEST.max(depth + 4)], value)
+    };
+    squares.iter().zip(fine).map(of_square).sum()
 }
 
 /// The receiver's plane cuts the opening: only the part above it counts, and a rule that straddles
@@ -93,8 +163,10 @@ fn across_horizon(
     value: &impl Fn([f64; 2]) -> f64,
 ) -> f64 {
     let opening = emitters.luminaire(source).kind.opening;
+    let (place, close) = (source.place(point), source.position.distance(point) < 2.0 * source.radius_m);
+    let plain = |u: [f64; 2]| Some(opening.plane_point(u));
     if !matches!(opening, Opening::Rect { .. } | Opening::Upright { round: false, .. }) {
-        return integral(4, value);
+        return integral(4, &Nearby { close, place, at: &plain }, value);
     }
     let height = |[u, v]: [f64; 2]| {
         normal.dot(source.position + source.world_from_luminaire * opening.plane_point([u, v]) - point)
@@ -118,8 +190,10 @@ fn across_horizon(
         let (e, f) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
         let area = (e[0] * f[1] - e[1] * f[0]).abs();
         // Duffy's map of the unit square onto the triangle; its Jacobian is s times twice the area.
-        sum += integral(1, &|[s, t]: [f64; 2]| {
-            value([a[0] + s * (e[0] + t * f[0]), a[1] + s * (e[1] + t * f[1])]) * s * area
+        let onto = |[s, t]: [f64; 2]| [a[0] + s * (e[0] + t * f[0]), a[1] + s * (e[1] + t * f[1])];
+        let at = |u: [f64; 2]| plain(onto(u));
+        sum += integral(1, &Nearby { close, place, at: &at }, &|[s, t]: [f64; 2]| {
+            value(onto([s, t])) * s * area
         });
     }
     sum
@@ -131,20 +205,20 @@ fn adaptive(
     edge: f64,
     fine: f64,
     tolerance: f64,
-    [depth, least]: [u32; 2],
+    [depth, least, deepest]: [u32; 3],
     value: &impl Fn([f64; 2]) -> f64,
 ) -> f64 {
     let coarse = product(&GAUSS2, corner, edge, value);
-    if depth >= least && ((fine - coarse).abs() <= tolerance || depth == DEEPEST) {
+    if depth >= least && ((fine - coarse).abs() <= tolerance || depth == deepest) {
         return fine;
     }
     let half = 0.5 * edge;
-    let quarters = [[0.0, 0.0], [half, 0.0], [0.0, half], [half, half]]
-        .map(|shift| [corner[0] + shift[0], corner[1] + shift[1]])
-        .map(|corner| (corner, product(&GAUSS3, corner, half, value)));
+    let quarters = quarters(corner, edge).map(|corner| (corner, product(&GAUSS3, corner, half, value)));
     quarters
         .iter()
-        .map(|&(corner, fine)| adaptive(corner, half, fine, 0.5 * tolerance, [depth + 1, least], value))
+        .map(|&(corner, fine)| {
+            adaptive(corner, half, fine, 0.5 * tolerance, [depth + 1, least, deepest], value)
+        })
         .sum()
 }
 

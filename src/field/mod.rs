@@ -50,3 +50,57 @@ pub struct Place {
     /// Unit normal of the triangle's front.
     pub normal: DVec3,
 }
+
+/// How much of a patch side light reaches; the rest is covered by what stands on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reached {
+    /// All of it.
+    Whole,
+    /// A part.
+    Part {
+        /// Share of its area, 0 … 1.
+        share: f64,
+        /// Mean of the places that light reaches, m.
+        middle: DVec3,
+        /// One of them, near to the mean, m.
+        place: DVec3,
+    },
+    /// Nothing.
+    Dark,
+}
+
+impl Reached {
+    /// From the places that light reaches, out of `tried`.
+    pub fn part(places: &[DVec3], tried: u32) -> Self {
+        if places.len() == tried as usize {
+            return Self::Whole;
+        }
+        let middle = places.iter().sum::<DVec3>() / places.len().max(1) as f64;
+        let nearest = places.iter().min_by(|a, b| a.distance(middle).total_cmp(&b.distance(middle)));
+        nearest.map_or(Self::Dark, |&place| {
+            let share = places.len() as f64 / f64::from(tried.max(1));
+            Self::Part { share, middle, place }
+        })
+    }
+
+    /// Share of the area that counts; a side that is dark as a whole counts as one.
+    pub fn share(&self) -> f64 {
+        match self {
+            Self::Part { share, .. } => *share,
+            Self::Whole | Self::Dark => 1.0,
+        }
+    }
+
+    /// Whether no light reaches it.
+    pub fn is_dark(&self) -> bool {
+        matches!(self, Self::Dark)
+    }
+
+    /// Middle and a place of the part that light reaches; `None` where it is all or none.
+    pub fn middle(&self) -> Option<[DVec3; 2]> {
+        match *self {
+            Self::Part { middle, place, .. } => Some([middle, place]),
+            Self::Whole | Self::Dark => None,
+        }
+    }
+}

@@ -34,6 +34,8 @@ pub struct Smooth {
 #[derive(Clone, Copy, Debug)]
 struct Side {
     centre: DVec3,
+    /// A place of it from which others are looked for.
+    clear: DVec3,
     facing: DVec3,
     weight: f64,
     value: f64,
@@ -44,13 +46,15 @@ struct Side {
 
 impl Smooth {
     /// Fits a function to one value per patch side. `kind` tells sides that must not be mixed apart;
-    /// sides for which it is `None` have no value.
+    /// those for which it is `None` stay by themselves. `part` says where the middle of a side is to
+    /// which only a part of the patch belongs, and a place that does belong.
     pub fn new(
         mesh: &Mesh,
         tracer: &Tracer,
         patches: &Patches,
         values: &[f64],
         kind: impl Fn(usize) -> Option<u32> + Sync,
+        part: impl Fn(usize) -> Option<[DVec3; 2]>,
     ) -> Self {
         let count = patches.sides();
         let total_m2: f64 = (0..count).step_by(2).map(|side| patches.area_m2(side)).sum();
@@ -58,11 +62,12 @@ impl Smooth {
         let reach_m = REACH * edge_m;
         let mut sides: Vec<Side> = (0..count)
             .map(|side| {
-                let (centre, front) = patches.centre(mesh, side);
+                let (middle, front) = patches.centre(mesh, side);
+                let [centre, clear] = part(side).unwrap_or([middle; 2]);
                 let facing = front.normalize_or_zero() * if side.is_multiple_of(2) { 1.0 } else { -1.0 };
                 let weight = patches.area_m2(side).sqrt().min(edge_m);
                 let value = values[side];
-                Side { centre, facing, weight, value, gradient: DVec3::ZERO, first: 0, last: 0 }
+                Side { centre, clear, facing, weight, value, gradient: DVec3::ZERO, first: 0, last: 0 }
             })
             .collect();
         let cells = Cells::new(&sides, 2.0 * reach_m);
@@ -77,11 +82,27 @@ impl Smooth {
             sides[side].last = neighbours.len() as u32;
         }
         let mut smooth = Self { reach_m, sides, neighbours };
-        let gradients: Vec<DVec3> = (0..count).into_par_iter().map(|side| smooth.fit(side)).collect();
-        for (side, gradient) in smooth.sides.iter_mut().zip(gradients) {
+        smooth.fit_all();
+        smooth
+    }
+
+    /// Another function on the same sides.
+    #[must_use]
+    pub fn with(&self, values: &[f64]) -> Self {
+        let mut other = self.clone();
+        for (side, value) in other.sides.iter_mut().zip(values) {
+            side.value = *value;
+        }
+        other.fit_all();
+        other
+    }
+
+    fn fit_all(&mut self) {
+        let gradients: Vec<DVec3> =
+            (0..self.sides.len()).into_par_iter().map(|side| self.fit(side)).collect();
+        for (side, gradient) in self.sides.iter_mut().zip(gradients) {
             side.gradient = gradient;
         }
-        smooth
     }
 
     fn around(&self, side: usize) -> &[u32] {
@@ -168,7 +189,7 @@ fn neighbours(
         }
         // Seen from a little above the surfaces: small unevenness does not part them.
         let lift_m = 0.1 * edge_m;
-        let (from, to) = (own.centre + own.facing * lift_m, other.centre + other.facing * lift_m);
+        let (from, to) = (own.clear + own.facing * lift_m, other.clear + other.facing * lift_m);
         let towards = to - from;
         let span_m = towards.length();
         let blocked = span_m > 0.0
@@ -239,7 +260,7 @@ mod tests {
         let tracer = Tracer::build(mesh, &materials);
         let patches = Patches::new(mesh, 0.02, |_| true);
         let values: Vec<f64> = (0..patches.sides()).map(|side| value(patches.centre(mesh, side).0)).collect();
-        (Smooth::new(mesh, &tracer, &patches, &values, |_| Some(0)), patches)
+        (Smooth::new(mesh, &tracer, &patches, &values, |_| Some(0), |_| None), patches)
     }
 
     /// Value at the floor's point (x, y).

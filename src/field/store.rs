@@ -1,11 +1,12 @@
 //! `field.safetensors`: stored fields as a file that other programs read too. docs/field-file.md
 //! describes it. Parsers take bytes; the file itself is mapped by `project`.
 
+use glam::DVec3;
 use safetensors::tensor::{Dtype, Metadata, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::{LuminanceField, Patches};
+use super::{LuminanceField, Patches, Reached};
 use crate::scene::{Channel, Scene};
 
 /// Name of the file in a result folder.
@@ -24,6 +25,8 @@ pub struct StoredField {
     pub field: LuminanceField,
     /// Its part that luminaires and their images make at first hand.
     pub direct: LuminanceField,
+    /// How much of every patch side light reaches.
+    pub reached: Vec<Reached>,
 }
 
 /// What a stored field was solved with.
@@ -168,6 +171,17 @@ fn describe(world: usize, scene: &Scene, stored: &StoredField, tensors: &mut Vec
         let values = (0..patches.sides()).flat_map(|side| field.at(side).iter().copied());
         tensors.push(Tensor::floats(name(what), vec![count, 2, channels], values));
     }
+    let reached = stored.reached.iter().flat_map(|reached| numbers(*reached));
+    tensors.push(Tensor::floats(name("reached"), vec![count, 2, 7], reached));
+}
+
+/// Share, middle and a place of the part that light reaches.
+fn numbers(reached: Reached) -> [f64; 7] {
+    match reached {
+        Reached::Whole => [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        Reached::Dark => [0.0; 7],
+        Reached::Part { share, middle: m, place: p } => [share, m.x, m.y, m.z, p.x, p.y, p.z],
+    }
 }
 
 fn channel_name(scene: &Scene, channel: &Channel) -> String {
@@ -267,7 +281,19 @@ impl<'b> FieldFile<'b> {
             Ok(field)
         };
         let made = Made { seed: head.seed, links: head.links, patch_m2 };
-        Ok(StoredField { made, field: load("luminance_cd_m2")?, direct: load("direct_cd_m2")? })
+        let reached = self
+            .finite(&format!("world{world}.reached"), &[patches.len(), 2, 7])?
+            .chunks_exact(7)
+            .map(|n| match n[0] {
+                share if share >= 1.0 => Reached::Whole,
+                share if share > 0.0 => {
+                    let at = |first: usize| DVec3::new(n[first], n[first + 1], n[first + 2]);
+                    Reached::Part { share, middle: at(1), place: at(4) }
+                }
+                _ => Reached::Dark,
+            })
+            .collect();
+        Ok(StoredField { made, field: load("luminance_cd_m2")?, direct: load("direct_cd_m2")?, reached })
     }
 
     fn splits(&self, world: usize) -> Result<Vec<u32>, StoreError> {
@@ -282,6 +308,17 @@ impl<'b> FieldFile<'b> {
     }
 
     fn floats(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, StoreError> {
+        let values = self.finite(name, shape)?;
+        match values.iter().position(|value| !(*value >= 0.0)) {
+            Some(at) => Err(StoreError::Malformed(format!(
+                "tensor {name}: value {at} is {}, no luminance",
+                values[at]
+            ))),
+            None => Ok(values),
+        }
+    }
+
+    fn finite(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, StoreError> {
         let malformed = |what: String| StoreError::Malformed(format!("tensor {name}: {what}"));
         let view = self.tensors.tensor(name).map_err(|error| malformed(error.to_string()))?;
         if view.dtype() != Dtype::F64 || view.shape() != shape {
@@ -292,8 +329,8 @@ impl<'b> FieldFile<'b> {
             .chunks_exact(8)
             .map(|chunk| f64::from_le_bytes(std::array::from_fn(|k| chunk[k])))
             .collect();
-        match values.iter().position(|value| !(value.is_finite() && *value >= 0.0)) {
-            Some(at) => Err(malformed(format!("value {at} is {}, no luminance", values[at]))),
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(at) => Err(malformed(format!("value {at} is {}", values[at]))),
             None => Ok(values),
         }
     }

@@ -6,6 +6,7 @@
 //! same numbers with opposite sign for both triangles, so no ray passes between them.
 #![allow(clippy::inline_always, reason = "the traversal is compiled once per SIMD level, whole")]
 
+mod shaft;
 mod wide;
 
 use std::mem::MaybeUninit;

@@ -54,8 +54,8 @@ fn finding(photometry: &Photometry, code: &'static str, places: &[Place], verb: 
     let step = |place: &&Place| (place.cd - place.usual_cd).abs();
     let worst = places.iter().max_by(|a, b| step(a).total_cmp(&step(b)))?;
     let plane = match photometry.format {
-        Format::Eulumdat => format!("C{}", super::c_deg(worst.azimuth_deg)),
-        Format::Lm63 { .. } | Format::Tm33 => format!("plane {}°", worst.azimuth_deg),
+        Format::Eulumdat | Format::Tm33 => format!("C{}", super::c_deg(worst.azimuth_deg)),
+        Format::Lm63 { .. } => format!("plane {}°", worst.azimuth_deg),
     };
     let message = format!(
         "{} of the intensities {verb} all their neighbours; the worst at {plane}, γ {}°: {:.1} cd among {:.1} cd",

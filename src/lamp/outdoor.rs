@@ -1,11 +1,43 @@
 //! Classes of road and area luminaires: luminous intensity G* and glare index D (EN 13201-2, annex A)
-//! and BUG (IES TM-15-11). For a luminaire mounted as its file lies, γ = 0 straight down. The limits
-//! come from public sources and are *unverified* against the standards.
+//! and BUG (IES TM-15-11). For a luminaire mounted as its file lies, γ = 0 straight down. No limit was
+//! compared with the standards themselves: what stands in one public source says so, the rest is
+//! *unverified*.
 
 use glam::DVec3;
 
 use crate::photometry::{Format, IntensityDistribution, Photometry, Symmetry};
 use crate::units::Undefined;
+
+/// How well the limits of a class are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// One public source has the same numbers.
+    OneSource,
+    /// From memory.
+    Unverified,
+}
+
+impl Known {
+    /// The word in files for machines.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::OneSource => "one-source",
+            Self::Unverified => "unverified",
+        }
+    }
+}
+
+/// Of G*1 … G*3, and of G*4 … G*6: W. van Bommel, Road Lighting (2015), table 11.2, after CIE 115:2010, whose
+/// classes are those of EN 13201-2.
+pub fn g_star_known(class: u8) -> Known {
+    if class >= 4 { Known::OneSource } else { Known::Unverified }
+}
+
+/// Of D1 … D6. The index itself, with the largest I at 85° over all azimuths and the area seen from there, is
+/// that of GOST R 55706-2023, annex Б.
+pub const D_KNOWN: Known = Known::Unverified;
+/// Of B, U and G. B and U: as in the crate eulumdat 0.7.0, whose limits of G differ from these.
+pub const BUG_KNOWN: [Known; 3] = [Known::OneSource, Known::OneSource, Known::Unverified];
 
 /// Largest cd/klm at γ ≥ 70°, 80°, 90° and from 95° on, for G*1 … G*6; `None`: no limit. Per 1000 lm of
 /// the luminaire's own flux.
@@ -21,8 +53,8 @@ const G_STAR: [[Option<f64>; 4]; 6] = [
 pub const G_GAMMAS_DEG: [f64; 4] = [70.0, 80.0, 90.0, 95.0];
 /// Largest glare index for D1 … D6, cd/m.
 const D_CLASSES: [f64; 6] = [7000.0, 5500.0, 4000.0, 2000.0, 1000.0, 500.0];
-/// What counts as no intensity at all, cd/klm: files hold one decimal.
-const NONE_CD_PER_KLM: f64 = 0.05;
+/// What counts as no intensity at all, cd/klm: where the classes ask for 0, van Bommel's table has 1.
+const NONE_CD_PER_KLM: f64 = 1.0;
 
 /// Largest zonal lumens for ratings 0 … 4: back 60–80°, 30–60°, 0–30°.
 const BACK_LM: [[f64; 3]; 5] = [
@@ -133,14 +165,17 @@ fn glare_index(photometry: &Photometry) -> Result<(f64, u8), Undefined> {
         return Err(Undefined::because("no luminous area is seen from γ = 85°"));
     }
     let index = cd / area_m2.sqrt();
-    let class = (1..=6).rev().find(|class| index <= D_CLASSES[usize::from(*class) - 1]).unwrap_or(0);
-    Ok((index, class))
+    Ok((index, d_class(index)))
+}
+
+fn d_class(index: f64) -> u8 {
+    (1..=6).rev().find(|class| index <= D_CLASSES[usize::from(*class) - 1]).unwrap_or(0)
 }
 
 /// Where the street is: EULUMDAT's C90; LM-63's 90° where the file mirrors about that plane, else its 0°.
 fn front_azimuth_deg(format: Format, symmetry: Symmetry) -> f64 {
     match (format, symmetry) {
-        (Format::Lm63 { .. } | Format::Tm33, Symmetry::AboutWidth) => 90.0,
+        (Format::Lm63 { .. }, Symmetry::AboutWidth) => 90.0,
         _ => 0.0,
     }
 }
@@ -240,6 +275,35 @@ mod tests {
         let flat = classes(&lamp(|_, gamma| 100.0 * gamma.to_radians().cos().max(0.0)));
         assert!((flat.g_cd_per_klm[0] - 108.9).abs() < 0.3 && (flat.g_cd_per_klm[1] - 55.3).abs() < 0.2);
         assert_eq!(flat.g_star, 6);
+    }
+
+    /// Catches: a limit read "below" instead of "up to", one that is compared with another column or row.
+    #[test]
+    fn both_sides_of_every_limit() {
+        for (row, class) in G_STAR.iter().zip(1u8..) {
+            let at_limits = row.map(|limit| limit.map_or(9000.0, |limit| limit.max(NONE_CD_PER_KLM)));
+            assert!(g_star(at_limits) >= class, "G*{class}: {at_limits:?}");
+            for column in (0..4).filter(|column| row[*column].is_some()) {
+                let mut above = at_limits;
+                above[column] += 0.01;
+                assert!(g_star(above) < class, "G*{class}: {above:?}");
+            }
+        }
+        for (limit, class) in D_CLASSES.into_iter().zip(1u8..) {
+            assert_eq!((d_class(limit), d_class(limit + 0.01)), (class, class - 1));
+        }
+        let rated = |lm: f64, limits: [f64; 5]| worst([("zone", lm, limits)]).0;
+        let glare = |column: usize| GLARE_LM.map(|row| row[column]);
+        let back = |column: usize| BACK_LM.map(|row| row[column]);
+        for limits in [back(0), back(1), back(2), UP_LM, glare(0), glare(1), glare(2)] {
+            for (limit, rating) in limits.into_iter().zip(0u8..) {
+                assert_eq!(
+                    (rated(limit, limits), rated(limit + 0.06, limits)),
+                    (rating, rating + 1),
+                    "{limits:?}"
+                );
+            }
+        }
     }
 
     /// Catches: area not projected, or not under the root. 0.6 × 0.3 m, 100 cd at 85°: A = 0.18 cos 85° =

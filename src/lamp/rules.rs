@@ -196,6 +196,12 @@ pub const RULES: &[Rule] = &[
          table with itself at twice the step.",
     ),
     warning(
+        "odd-angle",
+        "One angle does not keep the step of all others.",
+        "Measurements are made in even steps, or in a few ranges of even steps. One angle beside its place is a \
+         misprint more often than a choice; the intensities behind it then belong to another direction.",
+    ),
+    warning(
         "efficacy",
         "The flux does not fit the power.",
         "Luminaires give between 5 and 250 lm/W. Beyond that either is wrong: flux per 1000 lm left unscaled, power \
@@ -255,8 +261,8 @@ pub const RULES: &[Rule] = &[
     warning(
         "opening-approximated",
         "The luminous opening is replaced by the nearest known shape.",
-        "Sizes that are no shape of LM-63 (a line, a negative height) become the nearest shape, and TM-33's \
-         luminaire stands for its opening. Luminance and UGR follow the shape that was taken; illuminance does not \
+        "Sizes that are no shape of LM-63 (a line, a negative height) become the nearest shape; in TM-33 several \
+         areas become the rectangle around them, and without any the luminaire stands for its opening. Luminance and UGR follow the shape that was taken; illuminance does not \
          depend on it beyond about ten times its size.",
     ),
     warning(
@@ -269,6 +275,25 @@ pub const RULES: &[Rule] = &[
         "Type A or B photometry was converted to type C.",
         "Types A (headlamps) and B (floodlights) turn the goniometer about other axes. The intensities are \
          interpolated onto a grid of type C, fine enough for the stated error.",
+    ),
+    note(
+        "emitters-added",
+        "Several emitters were added into one distribution.",
+        "TM-33 may describe every emitter of a luminaire by itself. Far away their intensities add up, which is what \
+         is computed; near by, each shines from its own place.",
+    ),
+    note(
+        "ignored-data",
+        "The file holds data that are not read.",
+        "TM-33 may hold spectra, radiant and photon intensities, colours by angle, measured illuminances and \
+         multipliers of channels. gershun computes with luminous intensities; the rest is counted and left alone.",
+    ),
+    note(
+        "plane-orientation",
+        "How the planes lie to the luminaire is not beyond doubt.",
+        "The open schema of TM-33 gives the face towards h = 0 the sizes length × height, so h = 0 lies across the \
+         length; LM-63's 0° plane lies along it. A writer that carried LM-63's planes over unturned is wrong by 90°. \
+         Compare the drawing of `gershun lamp polar` with the maker's.",
     ),
     note(
         "emitter",
@@ -309,6 +334,7 @@ mod tests {
             include_str!("../photometry/mod.rs"),
             include_str!("../photometry/findings.rs"),
             include_str!("../photometry/numbers.rs"),
+            include_str!("../photometry/odd_angle.rs"),
             include_str!("../photometry/ies.rs"),
             include_str!("../photometry/ies_goniometer.rs"),
             include_str!("../photometry/ies_head.rs"),
@@ -316,6 +342,8 @@ mod tests {
             include_str!("../photometry/ldt.rs"),
             include_str!("../photometry/ldt_head.rs"),
             include_str!("../photometry/tm33.rs"),
+            include_str!("../photometry/tm33_opening.rs"),
+            include_str!("../photometry/tm33_table.rs"),
         ];
         for rule in RULES {
             let quoted = format!("\"{}\"", rule.code);

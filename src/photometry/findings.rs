@@ -11,13 +11,15 @@ pub(super) fn check(photometry: &Photometry) -> Vec<Finding> {
     checks.iter().filter_map(|check| check(photometry)).collect()
 }
 
-/// EULUMDAT states the flux itself; LM-63 only an upper bound, the flux of the lamps.
+/// EULUMDAT states the flux itself; LM-63 and relative photometry of TM-33 only an upper bound, the flux of
+/// the lamps.
 fn flux(photometry: &Photometry) -> Option<Finding> {
     let (rated, integrated) = (photometry.rated_flux_lm?, photometry.distribution.flux().0);
     let deviation = integrated / rated - 1.0;
     let odd = match photometry.format {
-        Format::Eulumdat => deviation.abs(),
-        Format::Lm63 { .. } | Format::Tm33 => deviation,
+        Format::Lm63 { .. } => deviation,
+        Format::Tm33 if photometry.lamp_flux_lm.is_some() => deviation,
+        Format::Eulumdat | Format::Tm33 => deviation.abs(),
     };
     let message = format!("rated {rated:.0} lm, integrates to {integrated:.0} lm");
     let consequence = format!(

@@ -5,7 +5,9 @@
 use super::ies_goniometer::{Goniometer, resampled};
 use super::ies_head::Head;
 use super::ies_opening::opening;
+use super::ies_tilt::is_tilt;
 use super::numbers::{Comma, DAMAGED, Numbers, check_gamma_range, count, positive, shortened};
+use super::odd_angle::odd_angle;
 use super::planes::{Plane, close_circle, mirrored, spread};
 use super::{Fault, Finding, Format, Photometry, Places};
 
@@ -31,11 +33,7 @@ pub(super) fn recognises(lines: &[&str]) -> bool {
 }
 
 fn tilt_line(lines: &[&str]) -> Option<usize> {
-    let is_tilt = |line: &&str| {
-        let line = line.trim_start();
-        line.get(..4).is_some_and(|word| word.eq_ignore_ascii_case("TILT")) && line.contains('=')
-    };
-    lines.iter().position(is_tilt)
+    lines.iter().position(|line| is_tilt(line))
 }
 
 pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
@@ -54,6 +52,8 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     }
     let angles = numbers.angles("horizontal angle", n_plane)?;
     let factor = head.factor(version, &mut findings) * tilt;
+    findings.extend(odd_angle("horizontal angle", &angles, true));
+    findings.extend(odd_angle(if head.goniometer == Goniometer::C { "γ" } else { "V" }, &gammas, false));
     let data_line = numbers.line;
     let mut planes = Vec::new();
     for angle in &angles {
@@ -136,7 +136,11 @@ fn tilt_factor(
     }
     if !value.eq_ignore_ascii_case("INCLUDE") {
         let message = format!("tilt data in another file ('{}')", shortened(value));
-        return Err(Fault::new(line, message, "paste the tilt data after TILT=INCLUDE, or use TILT=NONE"));
+        return Err(Fault::new(
+            line,
+            message,
+            "put that file beside this one, or paste its data after TILT=INCLUDE",
+        ));
     }
     numbers.next("the lamp-to-luminaire geometry")?;
     let pairs = count(numbers.next("the number of tilt angles")?, "tilt angles", 1)?;

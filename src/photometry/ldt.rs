@@ -6,6 +6,7 @@ use super::ldt_head::Head;
 use super::numbers::{
     Comma, DAMAGED, MAX_VALUES, Number, Numbers, check_gamma_range, count, parse, shortened,
 };
+use super::odd_angle::odd_angle;
 use super::planes::{Plane, close_circle, mirrored, spread};
 use super::{Fault, Finding, Format, Photometry, Places};
 
@@ -44,6 +45,8 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
     }
     let gammas = numbers.angles("γ", n_gamma)?;
     check_gamma_range(&gammas)?;
+    head.findings.extend(odd_angle("C", &angles, true));
+    head.findings.extend(odd_angle("γ", &gammas, false));
     let data_line = numbers.line + 1;
     let planes =
         read_planes(&mut numbers, symmetry, &angles, &gammas, lamps.cd_per_value, &mut head.findings)?;

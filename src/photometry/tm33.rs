@@ -1,71 +1,135 @@
-//! ANSI/IES TM-33 (XML): TM-33-18 (ATLA S001, root `LuminaireOpticalData`) and TM-33-23 (root
-//! `IESTM33-22`), as far as they are openly documented. One distribution of type C is read; spectra are
-//! not. Its horizontal 0° plane is taken as LM-63's: *along* the luminaire (+x).
+//! ANSI/IES TM-33 (XML), by the schema of ATLA S001 that is published with it: TM-33-18 (root `IESTM33`),
+//! TM-33-23 (`IESTM33-22`), and the root `LuminaireOpticalData` that other writers use. The trap: the face
+//! towards h = 0 measures length × height there, so h = 0 lies *across* the length, as in EULUMDAT.
 
 use roxmltree::{Document, Node};
 
-use super::numbers::{MAX_VALUES, shortened};
+use super::ies_goniometer::{Goniometer, resampled};
+use super::numbers::{Number, shortened};
 use super::planes::{Plane, close_circle, mirrored};
-use super::{Fault, Finding, Format, Opening, Photometry, Places};
+use super::tm33_opening::opening;
+use super::tm33_table::{Table, table};
+use super::{Fault, Finding, Format, IntensityDistribution, Photometry, Places, Symmetry};
 
-const DAMAGED: &str = "the file is damaged: get it from its manufacturer again";
-/// Angles closer than this are one, degrees.
-const SAME_DEG: f64 = 1e-6;
-const MM: f64 = 1e-3;
+pub(super) const DAMAGED: &str = "the file is damaged: get it from its manufacturer again";
+/// Azimuth of the luminaire frame minus h.
+const TURN_DEG: f64 = -90.0;
+/// Elements beside the luminous intensities, and what they hold.
+const IGNORED: [(&str, &str); 11] = [
+    ("EmitterSpectral", "emitter spectra"),
+    ("SpectralDistribution", "emitter spectra"),
+    ("AngularSpectral", "angular spectra"),
+    ("AngularColor", "angular colours"),
+    ("RadiantData", "radiant intensities"),
+    ("PhotonData", "photon intensities"),
+    ("IllumData", "illuminances"),
+    ("IrradData", "irradiances"),
+    ("PFDData", "photon flux densities"),
+    ("SpecIrradData", "spectral irradiances"),
+    ("Channels", "channel multipliers"),
+];
 
-/// The two root elements.
+/// The root elements.
 pub(super) fn recognises(text: &str) -> bool {
     text.trim_start().starts_with('<')
-        && (text.contains("<LuminaireOpticalData") || text.contains("<IESTM33-"))
+        && (text.contains("<LuminaireOpticalData") || text.contains("<IESTM33"))
+}
+
+/// A document and where its lines begin.
+pub(super) struct Xml {
+    starts: Vec<usize>,
+}
+
+impl Xml {
+    fn of(text: &str) -> Self {
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        Self { starts: std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect() }
+    }
+
+    /// The line of a node.
+    pub(super) fn line(&self, node: Node) -> usize {
+        self.starts.partition_point(|start| *start <= node.range().start)
+    }
+
+    /// A number among the children; `None` where there is none.
+    pub(super) fn number(&self, node: Node, name: &'static str) -> Result<Option<f64>, Fault> {
+        let Some(child) = children(node, name).next() else { return Ok(None) };
+        self.parsed(child, child.text().unwrap_or_default(), name).map(Some)
+    }
+
+    /// A finite number.
+    pub(super) fn parsed(&self, node: Node, text: &str, what: &str) -> Result<f64, Fault> {
+        let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+        value.ok_or_else(|| {
+            Fault::new(self.line(node), format!("{what}: '{}' is no number", shortened(text)), DAMAGED)
+        })
+    }
+}
+
+/// What one emitter gives.
+struct Emitted {
+    distribution: IntensityDistribution,
+    places: Places,
+    rated_lm: Option<f64>,
+    relative: bool,
+    watts: Option<f64>,
+    ra: Option<f64>,
 }
 
 pub(super) fn read(text: &str) -> Result<Photometry, Fault> {
     let document = Document::parse(text)
         .map_err(|error| Fault::new(error.pos().row as usize, format!("no XML: {error}"), DAMAGED))?;
+    let xml = Xml::of(text);
     let root = document.root_element();
-    let mut findings = Vec::new();
     let emitters: Vec<Node> = children(root, "Emitter").filter(|node| intensities(*node).is_some()).collect();
-    let [emitter] = emitters[..] else {
-        let message = format!("{} emitters with luminous intensities, one is needed", emitters.len());
-        let hint = "export each emitter as a file of its own, or the luminaire as a whole";
-        return Err(Fault::new(line(root), message, hint));
-    };
-    let data = intensities(emitter).expect("filtered above");
-    check_kind(data)?;
-    let (gammas_deg, planes) = table(data, &mut findings)?;
-    let factor = scale(emitter, data)?;
-    let planes = planes
-        .into_iter()
-        .map(|plane| Plane { cd: plane.cd.into_iter().map(|cd| cd * factor).collect(), ..plane });
-    let planes = expanded(planes.collect(), stated(data, "Symm").or(stated(data, "SymmType")), line(data))?;
-    let first_line = line(data);
-    let places = Places { gammas: Some([first_line; 2]), ..Places::default() }.with_planes(&planes, 0.0);
-    let distribution = close_circle(planes, gammas_deg, 0.0)
-        .map_err(|error| Fault::new(line(data), error.to_string(), DAMAGED))?;
-    let quantity = number(emitter, "Quantity")?.filter(|n| *n > 0.0).unwrap_or(1.0);
-    let lumens = number(emitter, "RatedLumens")?.filter(|lm| *lm > 0.0).map(|lm| lm * quantity);
-    let watts = number(emitter, "InputWattage")?.or(number(emitter, "InputWatts")?);
-    let ra = children(emitter, "ColorRendering").find_map(|node| number(node, "Ra").ok().flatten());
+    if emitters.is_empty() {
+        let hint = "only luminous intensities (cd) are read";
+        return Err(Fault::new(xml.line(root), "no emitter has luminous intensities", hint));
+    }
+    let mut findings = Vec::new();
+    let mut parts = Vec::new();
+    for emitter in &emitters {
+        parts.push(emitted(&xml, root, *emitter, &mut findings)?);
+    }
+    let opening = opening(&xml, root, &emitters, &mut findings)?;
+    findings.extend(ignored(&xml, root));
+    let distribution = sum(&xml, root, &parts)?;
+    if let [_, second, ..] = emitters[..] {
+        let message = format!("{} emitters are added into one distribution", emitters.len());
+        let consequence = "they shine from one place: illuminance nearer than about ten times their distance from \
+                           each other, and the glare of each, are approximate";
+        findings.push(Finding::new("emitters-added", xml.line(second), message, consequence));
+    }
+    if Symmetry::of(&distribution, 1e-3) != Symmetry::Rotational {
+        let message = "h = 0° is taken across the luminaire's length, as the schema names its faces";
+        let consequence = "where the maker means LM-63's 0° plane, all planes are turned by 90°: crosswise and endwise \
+                           are exchanged; set `rotate`";
+        findings.push(Finding::new("plane-orientation", xml.line(root), message, consequence));
+    }
+    let total = |of: fn(&Emitted) -> Option<f64>| parts.iter().map(of).sum::<Option<f64>>();
+    let rated_flux_lm = total(|part| part.rated_lm);
     Ok(Photometry {
         format: Format::Tm33,
         description: description(root),
-        opening: opening(root, &mut findings)?,
-        rated_flux_lm: lumens,
-        lamp_flux_lm: lumens.filter(|_| stated(data, "AbsolutePhotometry") == Some("false")),
+        opening,
+        rated_flux_lm,
+        lamp_flux_lm: rated_flux_lm.filter(|_| parts.iter().all(|part| part.relative)),
         lor: None,
-        power_w: watts.filter(|watts| *watts > 0.0),
-        colour_rendering: ra.filter(|ra| (0.0..=100.0).contains(ra)),
+        power_w: total(|part| part.watts),
+        colour_rendering: parts.iter().filter_map(|part| part.ra).reduce(f64::min),
         distribution,
-        places,
+        places: Places {
+            opening: Some(xml.line(children(root, "Luminaire").next().unwrap_or(root))),
+            ..parts.swap_remove(0).places
+        },
         findings,
     })
 }
 
-fn line(node: Node) -> usize {
-    node.document().text_pos_at(node.range().start).row as usize
-}
-
-fn children<'a, 'd: 'a>(node: Node<'a, 'd>, name: &'static str) -> impl Iterator<Item = Node<'a, 'd>> {
+pub(super) fn children<'a, 'd: 'a>(
+    node: Node<'a, 'd>,
+    name: &'static str,
+) -> impl Iterator<Item = Node<'a, 'd>> {
     node.children().filter(move |child| child.tag_name().name() == name)
 }
 
@@ -80,18 +144,7 @@ fn stated<'a>(data: Node<'a, '_>, name: &'static str) -> Option<&'a str> {
     text_of(data, name).or_else(|| text_of(above?, name))
 }
 
-fn number(node: Node, name: &'static str) -> Result<Option<f64>, Fault> {
-    let Some(child) = children(node, name).next() else { return Ok(None) };
-    parsed(child, child.text().unwrap_or_default(), name).map(Some)
-}
-
-fn parsed(node: Node, text: &str, what: &str) -> Result<f64, Fault> {
-    let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-    value
-        .ok_or_else(|| Fault::new(line(node), format!("{what}: '{}' is no number", shortened(text)), DAMAGED))
-}
-
-/// The element whose children are the intensities: it has three names in the editions.
+/// The element whose children are the luminous intensities: it has three names in the editions.
 fn intensities<'a, 'd>(emitter: Node<'a, 'd>) -> Option<Node<'a, 'd>> {
     let named = |node: &Node| {
         matches!(node.tag_name().name(), "LuminousIntensity" | "IntensityDistribution" | "LuminousData")
@@ -100,102 +153,101 @@ fn intensities<'a, 'd>(emitter: Node<'a, 'd>) -> Option<Node<'a, 'd>> {
     emitter.descendants().find(|node| named(node) && holds(node))
 }
 
-fn is_value(node: &Node) -> bool {
+pub(super) fn is_value(node: &Node) -> bool {
     matches!(node.tag_name().name(), "IntData" | "IntensityData")
 }
 
-fn check_kind(data: Node) -> Result<(), Fault> {
-    let kind = stated(data, "PhotometryType").unwrap_or("C");
-    if !kind.ends_with('C') {
-        let message = format!("photometry of type {}", shortened(kind));
-        return Err(Fault::new(
-            line(data),
-            message,
-            "only type C is read from TM-33: export the file as type C",
-        ));
-    }
+fn emitted(xml: &Xml, root: Node, emitter: Node, findings: &mut Vec<Finding>) -> Result<Emitted, Fault> {
+    let data = intensities(emitter).expect("the caller looked");
     let metric = stated(data, "Metric").unwrap_or("Luminous");
     if metric != "Luminous" {
         let message = format!("intensities are {}, not luminous", shortened(metric));
-        return Err(Fault::new(line(data), message, "only luminous intensities (cd) are read"));
+        return Err(Fault::new(xml.line(data), message, "only luminous intensities (cd) are read"));
     }
-    Ok(())
+    let goniometer = goniometer(xml, root, data)?;
+    let factor = scale(xml, emitter, data)?;
+    let Table { verticals, mut planes } = table(xml, data, goniometer, findings)?;
+    for plane in &mut planes {
+        plane.cd.iter_mut().for_each(|cd| *cd *= factor);
+    }
+    let first_line = xml.line(data);
+    let power = ["InputWattage", "InputWatts"].into_iter().flat_map(|name| children(emitter, name)).next();
+    let rated = ["LuminousFlux", "RatedLumens"]
+        .into_iter()
+        .find_map(|name| emitter.descendants().find(|node| node.tag_name().name() == name));
+    let mut places = Places {
+        flux: rated.map(|node| xml.line(node)),
+        power: power.map(|node| xml.line(node)),
+        gammas: Some([first_line; 2]),
+        ..Places::default()
+    };
+    let fault = |error: super::DistributionError| Fault::new(first_line, error.to_string(), DAMAGED);
+    let distribution = if goniometer == Goniometer::C {
+        let symmetry = stated(data, "Symm").or(stated(data, "SymmType"));
+        let planes = expanded(planes, symmetry, first_line)?;
+        places = places.with_planes(&planes, TURN_DEG);
+        close_circle(planes, verticals, TURN_DEG).map_err(fault)?
+    } else {
+        let numbered = |value: f64| Number { value, line: first_line };
+        let vertical: Vec<Number> = verticals.into_iter().map(numbered).collect();
+        let horizontal: Vec<Number> = planes.iter().map(|plane| numbered(plane.angle_deg)).collect();
+        let (distribution, finding) = resampled(goniometer, &vertical, &horizontal, &planes)?;
+        findings.push(finding);
+        distribution
+    };
+    if let Some(tilt) = children(emitter, "TiltAngles").next() {
+        let message = "the emitter's flux depends on tilt";
+        let consequence = "not applied: mounted at another tilt, flux and illuminance differ";
+        findings.push(Finding::new("tilt", xml.line(tilt), message, consequence));
+    }
+    let quantity = xml.number(emitter, "Quantity")?.filter(|n| *n > 0.0).unwrap_or(1.0);
+    let flux = match rated {
+        Some(node) => Some(xml.parsed(node, node.text().unwrap_or_default(), "LuminousFlux")?),
+        None => None,
+    };
+    let of_all = rated.is_some_and(|node| node.tag_name().name() == "LuminousFlux");
+    let watts = match power {
+        Some(node) => Some(xml.parsed(node, node.text().unwrap_or_default(), "InputWattage")?),
+        None => None,
+    };
+    let ra = emitter.descendants().find(|node| node.tag_name().name() == "Ra" && node.text().is_some());
+    let ra = ra.and_then(|node| node.text()?.trim().parse::<f64>().ok());
+    Ok(Emitted {
+        distribution,
+        places,
+        rated_lm: flux.filter(|lm| *lm > 0.0).map(|lm| if of_all { lm } else { lm * quantity }),
+        relative: !of_all && stated(data, "AbsolutePhotometry") == Some("false"),
+        watts: watts.filter(|watts| *watts > 0.0),
+        ra: ra.filter(|ra| (0.0..=100.0).contains(ra)),
+    })
 }
 
-/// All values on the grid of their angles; every direction must be there once.
-fn table(data: Node, findings: &mut Vec<Finding>) -> Result<(Vec<f64>, Vec<Plane>), Fault> {
-    let mut values = Vec::new();
-    for node in data.children().filter(is_value) {
-        let angle = |short: &'static str, long: &'static str| {
-            let text = node.attribute(short).or(node.attribute(long)).unwrap_or_default();
-            parsed(node, text, long)
-        };
-        let (horizontal, vertical) = (angle("h", "horz")?, angle("v", "vert")?);
-        let cd = parsed(node, node.text().unwrap_or_default(), "intensity")?;
-        if !(0.0..=180.0).contains(&vertical) || !(0.0..=360.0).contains(&horizontal) {
-            let message = format!("direction h {horizontal}°, v {vertical}°, expected 0–360° and 0–180°");
-            return Err(Fault::new(line(node), message, DAMAGED));
-        }
-        if !(cd >= 0.0) {
-            let message = format!("intensity {cd} cd at h {horizontal}°, v {vertical}° is negative");
-            return Err(Fault::new(line(node), message, DAMAGED));
-        }
-        values.push((horizontal, vertical, cd, line(node)));
-    }
-    let axis = |of: fn(&(f64, f64, f64, usize)) -> f64| {
-        let mut axis: Vec<f64> = values.iter().map(of).collect();
-        axis.sort_by(f64::total_cmp);
-        axis.dedup_by(|next, kept| *next - *kept < SAME_DEG);
-        axis
+/// Type C unless the intensities or the equipment name another.
+fn goniometer(xml: &Xml, root: Node, data: Node) -> Result<Goniometer, Fault> {
+    let of_equipment = || {
+        let equipment = children(root, "Equipment").next()?;
+        let device = equipment.children().find(|node| text_of(*node, "Type").is_some())?;
+        text_of(device, "Type")
     };
-    let (horizontals, verticals) = (axis(|value| value.0), axis(|value| value.1));
-    let cells = horizontals.len().saturating_mul(verticals.len());
-    if verticals.len() < 2 || cells > MAX_VALUES || cells > 4 * values.len() + 4096 {
-        let message = format!("{} vertical and {} horizontal angles", verticals.len(), horizontals.len());
-        return Err(Fault::new(line(data), message, DAMAGED));
-    }
-    let mut cd = vec![None; cells];
-    let mut doubled = 0;
-    for (horizontal, vertical, value, line) in &values {
-        let at = |axis: &[f64], angle: f64| axis.partition_point(|known| *known < angle - SAME_DEG);
-        let cell = &mut cd[at(&horizontals, *horizontal) * verticals.len() + at(&verticals, *vertical)];
-        doubled += usize::from(cell.is_some());
-        cell.get_or_insert((*value, *line));
-    }
-    if doubled > 0 {
-        let message = format!("{doubled} directions are given twice");
-        let consequence = "the first value counts; if the others differ, the distribution is uncertain";
-        findings.push(Finding::new("trailing-data", line(data), message, consequence));
-    }
-    let columns = verticals.len();
-    // All planes meet at the poles: writers may store those values once.
-    for pole in [0, columns - 1] {
-        let is_pole = verticals[pole] < SAME_DEG || verticals[pole] > 180.0 - SAME_DEG;
-        let known = (0..horizontals.len()).find_map(|row| cd[row * columns + pole]);
-        for row in (0..horizontals.len()).filter(|_| is_pole) {
-            cd[row * columns + pole] = cd[row * columns + pole].or(known);
+    let kind = stated(data, "PhotometryType").or_else(of_equipment).unwrap_or("C");
+    match kind.chars().rev().find(|c| !c.is_whitespace()) {
+        Some('A') => Ok(Goniometer::A),
+        Some('B') => Ok(Goniometer::B),
+        Some('C') => Ok(Goniometer::C),
+        _ => {
+            let message = format!("photometry of type '{}'", shortened(kind));
+            Err(Fault::new(xml.line(data), message, "types A, B and C are read: export the file as type C"))
         }
     }
-    let mut planes = Vec::new();
-    for (row, plane) in horizontals.iter().zip(cd.chunks(columns)) {
-        let missing = plane.iter().position(Option::is_none);
-        if let Some(missing) = missing {
-            let message = format!("no intensity at h {row}°, v {}°", verticals[missing]);
-            return Err(Fault::new(line(data), message, DAMAGED));
-        }
-        let (cd, lines): (_, Vec<usize>) = plane.iter().copied().flatten().unzip();
-        planes.push(Plane { angle_deg: *row, cd, lines: lines.into() });
-    }
-    Ok((verticals, planes))
 }
 
 /// Multiplier and ballast factor, each applied once.
-fn scale(emitter: Node, data: Node) -> Result<f64, Fault> {
+fn scale(xml: &Xml, emitter: Node, data: Node) -> Result<f64, Fault> {
     let mut factor = 1.0;
     for (node, name) in [(data, "Multiplier"), (emitter, "BallastFactor")] {
-        if let Some(value) = number(node, name)? {
+        if let Some(value) = xml.number(node, name)? {
             if !(value > 0.0) {
-                return Err(Fault::new(line(node), format!("{name} {value} is not positive"), DAMAGED));
+                return Err(Fault::new(xml.line(node), format!("{name} {value} is not positive"), DAMAGED));
             }
             factor *= value;
         }
@@ -203,7 +255,7 @@ fn scale(emitter: Node, data: Node) -> Result<f64, Fault> {
     Ok(factor)
 }
 
-/// Mirror images by the declared symmetry, or where none is declared by the range of the angles.
+/// Mirror images by the range of the angles: programs write all planes of a symmetric luminaire as well.
 fn expanded(planes: Vec<Plane>, symmetry: Option<&str>, line: usize) -> Result<Vec<Plane>, Fault> {
     let word: String = symmetry.unwrap_or_default().chars().filter(char::is_ascii_alphanumeric).collect();
     let word = word.to_ascii_lowercase();
@@ -212,12 +264,11 @@ fn expanded(planes: Vec<Plane>, symmetry: Option<&str>, line: usize) -> Result<V
     if planes.len() == 1 || word.ends_with("full") {
         return Ok(planes.into_iter().take(1).collect());
     }
-    // Programs write all planes of a symmetric luminaire as well: the range decides.
-    if last > 180.0 + SAME_DEG && !spans(90.0, 270.0) {
-        return Ok(planes);
-    }
     if spans(90.0, 270.0) {
         return Ok(mirrored(planes, 90.0));
+    }
+    if last > 180.0 + 1e-6 {
+        return Ok(planes);
     }
     if spans(0.0, 90.0) {
         return Ok(mirrored(mirrored(planes, 0.0), 90.0));
@@ -229,108 +280,61 @@ fn expanded(planes: Vec<Plane>, symmetry: Option<&str>, line: usize) -> Result<V
     Err(Fault::new(line, message, "type C needs 0°, 0–90°, 0–180°, 90–270° or 0–360°"))
 }
 
+/// The emitters' distributions, added on all of their angles; each is linear between its own.
+fn sum(xml: &Xml, root: Node, parts: &[Emitted]) -> Result<IntensityDistribution, Fault> {
+    let [first, others @ ..] = parts else { unreachable!("there is at least one emitter") };
+    if others.is_empty() {
+        return Ok(first.distribution.clone());
+    }
+    let grids: Vec<_> = parts.iter().filter_map(|part| part.distribution.grid()).collect();
+    let ends = |gammas: &[f64]| [gammas[0], gammas[gammas.len() - 1]];
+    let apart = |(_, gammas): &&(&[f64], &[f64])| {
+        let ([from, to], [from_0, to_0]) = (ends(gammas), ends(grids[0].1));
+        (from - from_0).abs() > 1e-6 || (to - to_0).abs() > 1e-6
+    };
+    if grids.iter().any(|grid| apart(&grid)) {
+        let hint = "export each emitter as a file of its own, or the luminaire as a whole";
+        return Err(Fault::new(xml.line(root), "the emitters do not cover the same angles", hint));
+    }
+    let union = |mut angles: Vec<f64>| {
+        angles.sort_by(f64::total_cmp);
+        angles.dedup_by(|next, kept| *next - *kept < 1e-6);
+        angles
+    };
+    let azimuths = union(grids.iter().flat_map(|grid| grid.0.to_vec()).collect());
+    let gammas = union(grids.iter().flat_map(|grid| grid.1.to_vec()).collect());
+    let at = |azimuth: f64, gamma: f64| -> f64 {
+        parts.iter().map(|part| part.distribution.intensity_at(azimuth, gamma)).sum()
+    };
+    let plane = |azimuth: f64| gammas.iter().map(|gamma| at(azimuth, *gamma)).collect::<Vec<f64>>();
+    let mut cd: Vec<Vec<f64>> =
+        azimuths[..azimuths.len() - 1].iter().map(|azimuth| plane(*azimuth)).collect();
+    cd.push(cd[0].clone());
+    IntensityDistribution::from_grid(azimuths, gammas, cd)
+        .map_err(|error| Fault::new(xml.line(root), error.to_string(), DAMAGED))
+}
+
+/// What else the file holds, counted.
+fn ignored(xml: &Xml, root: Node) -> Option<Finding> {
+    let found = |(name, what): &(&'static str, &'static str)| {
+        let count = root.descendants().filter(|node| node.tag_name().name() == *name).count();
+        (count > 0).then(|| format!("{what}: {count}"))
+    };
+    let told: Vec<String> = IGNORED.iter().filter_map(found).collect();
+    let first =
+        root.descendants().find(|node| IGNORED.iter().any(|(name, _)| node.tag_name().name() == *name))?;
+    let message = format!("not read: {}", told.join("; "));
+    let consequence =
+        "light is computed from the luminous intensities alone; nothing depends on the colour of light";
+    Some(Finding::new("ignored-data", xml.line(first), message, consequence))
+}
+
 fn description(root: Node) -> String {
     let Some(header) = children(root, "Header").next() else { return String::new() };
     let parts = ["Manufacturer", "CatalogNumber", "Description"].map(|name| text_of(header, name));
     parts.into_iter().flatten().collect::<Vec<_>>().join(" ")
 }
 
-/// The editions do not agree on where the luminous opening is described, so the luminaire's own
-/// dimensions stand for it.
-fn opening(root: Node, findings: &mut Vec<Finding>) -> Result<Opening, Fault> {
-    let size = children(root, "Luminaire").find_map(|luminaire| children(luminaire, "Dimensions").next());
-    let Some(size) = size else { return Ok(Opening::Point) };
-    let edge = |name: &'static str| Ok(number(size, name)?.unwrap_or(0.0).max(0.0) * MM);
-    let (length_m, width_m) = (edge("Length")?, edge("Width")?);
-    let opening = match (length_m > 0.0, width_m > 0.0) {
-        (true, true) => Opening::rect(length_m, width_m),
-        (true, false) | (false, true) => Opening::Disc { diameter_m: length_m.max(width_m), height_m: 0.0 },
-        (false, false) => return Ok(Opening::Point),
-    };
-    let message = format!(
-        "the luminaire's own size of {length_m:.3} × {width_m:.3} m is taken as its luminous opening"
-    );
-    let consequence = "luminance and UGR are too low where less of it shines; set `area`";
-    findings.push(Finding::new("opening-approximated", line(size), message, consequence));
-    Ok(opening)
-}
-
 #[cfg(test)]
-pub(super) mod tests {
-    use super::super::{PhotometryError, parse};
-    use super::*;
-
-    pub(in super::super) const SAMPLE: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<IESTM33-22>
-  <Version>1.1</Version>
-  <Header><Manufacturer>Maker</Manufacturer><CatalogNumber>T-1</CatalogNumber></Header>
-  <Luminaire><Dimensions><Length>1200</Length><Width>300</Width><Height>80</Height></Dimensions></Luminaire>
-  <Emitter>
-    <Quantity>1</Quantity><RatedLumens>390</RatedLumens><InputWattage>4</InputWattage>
-    <ColorRendering><Ra>82</Ra></ColorRendering>
-    <LuminousData>
-      <PhotometryType>CIE _ C</PhotometryType><Metric>Luminous</Metric><SymmType>Symm _ Quad</SymmType>
-      <LuminousIntensity>
-        <Multiplier>2</Multiplier>
-        <IntData h="0" v="0">50</IntData><IntData h="0" v="45">50</IntData><IntData h="0" v="90">0</IntData>
-        <IntData h="90" v="0">50</IntData><IntData h="90" v="45">20</IntData><IntData h="90" v="90">0</IntData>
-      </LuminousIntensity>
-    </LuminousData>
-  </Emitter>
-</IESTM33-22>
-"#;
-
-    fn edited(from: &str, to: &str) -> Result<Photometry, PhotometryError> {
-        assert!(SAMPLE.contains(from), "{from}");
-        parse(SAMPLE.replace(from, to).as_bytes(), "x.xml")
-    }
-
-    /// Catches: a multiplier forgotten, planes not mirrored, 0° laid across, millimetres as metres.
-    #[test]
-    fn factors_frame_and_sizes() {
-        let lamp = edited("T-1", "T-1").expect("sound");
-        let at = |azimuth: f64| lamp.distribution.intensity_at(azimuth, 45.0);
-        for (azimuth, cd) in [(0.0, 100.0), (180.0, 100.0), (90.0, 40.0), (270.0, 40.0), (225.0, 70.0)] {
-            assert!((at(azimuth) - cd).abs() < 1e-9, "{azimuth}: {}", at(azimuth));
-        }
-        assert_eq!(lamp.opening, Opening::rect(1.2, 0.3));
-        assert_eq!((lamp.format, lamp.description.as_str()), (Format::Tm33, "Maker T-1"));
-        assert_eq!(
-            (lamp.power_w, lamp.colour_rendering, lamp.rated_flux_lm),
-            (Some(4.0), Some(82.0), Some(390.0))
-        );
-    }
-
-    /// Catches: the older edition's names unknown, values at the pole demanded once per plane.
-    #[test]
-    fn the_older_edition_reads_alike() {
-        let older = SAMPLE
-            .replace("IESTM33-22>", "LuminaireOpticalData>")
-            .replace("LuminousIntensity>", "IntensityDistribution>")
-            .replace("IntData", "IntensityData")
-            .replace(" h=", " horz=")
-            .replace(" v=", " vert=")
-            .replace(r#"<IntensityData horz="90" vert="0">50</IntensityData>"#, "");
-        let [a, b] = [SAMPLE, &older].map(|text| parse(text.as_bytes(), "x.xml").expect("sound"));
-        assert!((a.distribution.flux().0 - b.distribution.flux().0).abs() < 1e-9);
-    }
-
-    /// Catches: radiant intensities as candelas, type B as C, a hole in the table, several emitters as
-    /// one, a panic on damage.
-    #[test]
-    fn what_cannot_be_read_is_refused_with_its_line() {
-        for (from, to, what) in [
-            ("CIE _ C", "CIE _ B", "type"),
-            (">Luminous<", ">Radiant<", "luminous"),
-            (r#"<IntData h="90" v="45">20</IntData>"#, "", "no intensity"),
-            (r#"v="45">20"#, r#"v="45">-20"#, "negative"),
-            (r#"v="45">20"#, r#"v="45">x"#, "no number"),
-            ("</IESTM33-22>", "", "XML"),
-            ("<Multiplier>2", "<Multiplier>0", "not positive"),
-            ("Emitter>", "Emiter>", "0 emitters"),
-        ] {
-            let error = edited(from, to).expect_err(what);
-            assert!(error.to_string().contains(what) && error.line > 0, "{error}");
-        }
-    }
-}
+#[path = "tm33_tests.rs"]
+pub(super) mod tests;

@@ -199,6 +199,7 @@ fn of_norm(
             let same = |other: &PlannedRequirement| {
                 other.subject == one.subject
                     && other.subject_name == one.subject_name
+                    && other.light_scene == one.light_scene
                     && other.quantity == one.quantity
                     && other.statistic == one.statistic
                     && format!("{:?}", other.bound) == format!("{:?}", one.bound)

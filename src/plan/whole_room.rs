@@ -49,7 +49,7 @@ pub(super) fn whole_room(
             required.push(requirement(standard, row, limit, subject, &name));
         }
     }
-    required.extend(intensities(standard, world, room, row));
+    required.extend(intensities(standard, world, room, planned, row));
     for reason in &row.not_judged {
         let statistic = standard_level(row);
         let mut one = unassessed(standard, &row.reference, Quantity::Horizontal, statistic, reason.clone());
@@ -69,8 +69,31 @@ pub(super) fn whole_room(
 }
 
 /// Limits on the intensity of the luminaires that shine in an emergency: one for each type and class of
-/// mounting heights.
-fn intensities(standard: &Standard, world: &World, room: &Room, row: &Row) -> Vec<PlannedRequirement> {
+/// mounting heights, under each light scene in which an area of the row is judged.
+fn intensities(
+    standard: &Standard,
+    world: &World,
+    room: &Room,
+    planned: &PlannedRoom,
+    row: &Row,
+) -> Vec<PlannedRequirement> {
+    let own = planned.areas.iter().filter(|area| area.row.as_ref() == Some(&row.reference));
+    let mut scenes: Vec<usize> = own.map(|area| area.light_scene).collect();
+    scenes.sort_unstable();
+    scenes.dedup();
+    if scenes.is_empty() {
+        scenes.push(0);
+    }
+    scenes.into_iter().flat_map(|scene| intensities_under(standard, world, room, row, scene)).collect()
+}
+
+fn intensities_under(
+    standard: &Standard,
+    world: &World,
+    room: &Room,
+    row: &Row,
+    light_scene: usize,
+) -> Vec<PlannedRequirement> {
     let Some(limit) = &row.intensity else { return Vec::new() };
     let mut required: Vec<PlannedRequirement> = Vec::new();
     let hung = room.luminaires.iter().map(|&index| &world.scene.luminaires[index]);
@@ -91,7 +114,7 @@ fn intensities(standard: &Standard, world: &World, room: &Room, row: &Row) -> Ve
             clause: row.reference.clone(),
             subject,
             subject_name: luminaire.kind.name.clone(),
-            light_scene: 0,
+            light_scene,
             quantity: Quantity::Intensity,
             statistic: Statistic::Max,
             bound: Bound::Max(limit_cd),

@@ -87,8 +87,16 @@ pub fn value_beside(lang: Lang, quantity: Quantity, statistic: Statistic, shown:
     text
 }
 
-/// A limit, without the zeros that rounding would add to UGR and R_a.
+/// A limit, without the zeros that rounding would add to UGR and R_a; a ratio of 0.025 (40 : 1) keeps its
+/// third decimal, or it would be said to be another limit.
 pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -> String {
+    if statistic.is_ratio() {
+        let exact = |decimals: &usize| {
+            let scale = 10_f64.powi(*decimals as i32);
+            ((limit * scale).round() / scale - limit).abs() < 1e-9
+        };
+        return fixed(lang, limit, (2..=4).find(exact).unwrap_or(2));
+    }
     let whole = quantity.is_single() && limit.fract().abs() < 1e-9;
     if whole { fixed(lang, limit, 0) } else { value(lang, quantity, statistic, limit) }
 }
@@ -178,6 +186,9 @@ mod tests {
         assert_eq!(english(luminance, Statistic::Mean, 123456.0), "123\u{202f}000");
         assert_eq!(limit(Lang::En, Quantity::Ugr, Statistic::Value, 19.0), "19");
         assert_eq!(limit(Lang::En, Quantity::Ugr, Statistic::Value, 19.5), "19.5");
+        assert_eq!(limit(Lang::En, Quantity::Horizontal, Statistic::Ud, 0.025), "0.025");
+        assert_eq!(limit(Lang::En, Quantity::Horizontal, Statistic::U0, 0.6), "0.60");
+        assert_eq!(limit(Lang::En, Quantity::Horizontal, Statistic::U0, 1.0 / 3.0), "0.33");
     }
 
     #[test]

@@ -123,8 +123,9 @@ impl Shot {
         (0..width * height).map(seen).collect()
     }
 
-    /// Median of the standard errors over the luminances.
+    /// Median of the standard errors over the luminances, where they are those of the whole.
     pub fn median_relative_error(&self) -> Option<f64> {
+        self.way.blocks()?;
         let errors = self.image.standard_error_cd_m2.as_ref()?;
         let mut relative: Vec<f64> = errors
             .iter()
@@ -147,6 +148,9 @@ impl Shot {
             "luminance in cd/m² at initial flux, camera {}, light scene {}; {way}; {interval}",
             self.name, self.light_scene
         )];
+        if self.way.blocks().is_none() && self.image.standard_error_cd_m2.is_some() {
+            notes.push("channel se: standard error of the rays in glossy lobes alone".to_owned());
+        }
         notes.extend(self.biases.iter().cloned());
         LuminanceImage { notes, ..self.image.clone() }
     }

@@ -53,6 +53,20 @@ pub(super) fn scatter(
     rng: &mut Rng,
     sight: &mut Sight,
 ) -> Option<Onward> {
+    scatter_at(emitters, lobe, landing, [least, SHADOW_RAYS], |_, rng| rng.uniforms(), rng, sight)
+}
+
+/// [`scatter`] with `points` for the place on each opening (`Some`, by source) and for the lobe ray
+/// (`None`), and with a number of shadow rays.
+pub(super) fn scatter_at(
+    emitters: &Emitters,
+    lobe: &Lobe,
+    landing: &Landing,
+    [least, shadow_rays]: [f64; 2],
+    points: impl Fn(Option<usize>, &mut Rng) -> [f64; 2],
+    rng: &mut Rng,
+    sight: &mut Sight,
+) -> Option<Onward> {
     let world = sphere::frame(landing.normal);
     let look = Look {
         lobe,
@@ -65,8 +79,8 @@ pub(super) fn scatter(
     if !(look.to_eye.z > 0.0) {
         return None;
     }
-    add_lamps(emitters, &look, world, rng, sight);
-    let (local, share) = lobe.sample(look.to_eye, rng.uniforms())?;
+    add_lamps(emitters, &look, world, shadow_rays, &points, rng, sight);
+    let (local, share) = lobe.sample(look.to_eye, points(None, rng))?;
     let weight = landing.weight * share;
     let survival = (weight / least).min(1.0);
     if rng.uniform() >= survival {
@@ -88,7 +102,15 @@ pub(super) fn scatter(
 }
 
 /// Points on openings, and point sources, which no ray can hit.
-fn add_lamps(emitters: &Emitters, look: &Look, world: glam::DMat3, rng: &mut Rng, sight: &mut Sight) {
+fn add_lamps(
+    emitters: &Emitters,
+    look: &Look,
+    world: glam::DMat3,
+    shadow_rays: f64,
+    points: &impl Fn(Option<usize>, &mut Rng) -> [f64; 2],
+    rng: &mut Rng,
+    sight: &mut Sight,
+) {
     let scratch: &mut Vec<(usize, f64, Arrival, bool)> = &mut sight.scratch;
     scratch.clear();
     let mut total = 0.0;
@@ -101,7 +123,8 @@ fn add_lamps(emitters: &Emitters, look: &Look, world: glam::DMat3, rng: &mut Rng
             continue;
         }
         let above = |direction: DVec3| world.z_axis.dot(direction) > 0.0;
-        let Some(arrival) = emitters.arrival_if(source, look.origin, rng.uniforms(), above) else { continue };
+        let u = points(Some(index), rng);
+        let Some(arrival) = emitters.arrival_if(source, look.origin, u, above) else { continue };
         let (f_cos, found) = look.towards(world.transpose() * arrival.direction);
         let mut luminance = look.weight * arrival.normal_lx * f_cos / considered;
         if !source.is_point() {
@@ -114,7 +137,7 @@ fn add_lamps(emitters: &Emitters, look: &Look, world: glam::DMat3, rng: &mut Rng
         }
     }
     for (index, luminance, arrival, _) in scratch.iter() {
-        let chance = (SHADOW_RAYS * luminance / total).min(1.0);
+        let chance = (shadow_rays * luminance / total).min(1.0);
         if chance < 1.0 && rng.uniform() >= chance {
             continue;
         }

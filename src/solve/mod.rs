@@ -3,6 +3,7 @@
 
 mod answer;
 mod chains;
+mod covered;
 mod double;
 pub mod far_field;
 mod flux;

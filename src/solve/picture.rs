@@ -1,23 +1,25 @@
 //! Pictures: the luminance seen along every pixel's ray from the stored field. Mirrors and panes are
-//! followed exactly, both branches at glass; openings are seen exactly at the pixel's centre.
+//! followed exactly, both branches at glass; openings count by the share of the pixel that they fill.
 //!
 //! Two of the three ways have no interval, for what they approximate is not sampled again:
 //! [`Detail::Stored`] shows the field as it is, [`Detail::Exact`] adds direct light computed where it
-//! is seen to the interpolated indirect part of the field. [`replicate`] is unbiased: independent
+//! is seen to the interpolated indirect part of the field, and samples glossy lobes. [`replicate`] is unbiased: independent
 //! blocks of the solver's own answer.
 
 mod direct;
+mod lobes;
+mod openings;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use self::openings::Beam;
 use super::highlights::Highlights;
 use super::look::Landing;
 use super::{Counts, Effort, PARTS, Prepared, answer, prepare};
 use crate::emitters::Emitters;
 use crate::field::store::{Made, StoredField};
 use crate::field::{LuminanceField, Smooth};
-use crate::geometry::trace::Hit;
 use crate::image::{LuminanceImage, View};
 use crate::material::Bsdf;
 use crate::query::Ray;
@@ -64,6 +66,8 @@ pub struct Picture<'e> {
     stored: Vec<f64>,
     /// Indirect luminance per unit of reflectance, cd/m².
     indirect: Smooth,
+    /// The same of all diffuse light, where glossy surfaces may look at it.
+    whole: Option<Smooth>,
     seed: u64,
 }
 
@@ -77,9 +81,9 @@ pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
     // Smoothing takes patches of about one size.
     let effort = Effort { patch_m2: Some(patch_m2), adaptive: false, links: LINKS, ..Effort::default() };
     let highlights = Highlights::new(&emitters);
-    let (field, direct) = prepare::parts(&emitters, &highlights, &effort, seed);
+    let prepare::Parts { field, direct, reached } = prepare::parts(&emitters, &highlights, &effort, seed);
     let made = Made { seed, links: LINKS, patch_m2 };
-    Exposure { emitters, stored: StoredField { made, field, direct } }
+    Exposure { emitters, stored: StoredField { made, field, direct, reached } }
 }
 
 /// Pictures of a scene from its field as it was stored.
@@ -109,28 +113,33 @@ impl Exposure<'_> {
             let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
             reflectance + transmittance
         };
+        let per_albedo =
+            |side: usize, value: f64| if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 };
         let indirect: Vec<f64> = (0..patches.sides())
-            .map(|side| {
-                let value = stored[side] - weighted(self.stored.direct.at(side));
-                if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 }
-            })
+            .map(|side| per_albedo(side, stored[side] - weighted(self.stored.direct.at(side))))
             .collect();
         // Per unit of reflectance opaque surfaces differ by place only, opals by material too.
         let kind = |side: usize| match scene.bsdf(patches.triangle(side)) {
-            _ if !(albedo(side) > 0.0) => None,
+            _ if !(albedo(side) > 0.0) || self.stored.reached[side].is_dark() => None,
             Bsdf::Opal { .. } => {
                 let surface = scene.mesh.triangles[patches.triangle(side) as usize].surface;
                 Some(1 + scene.mesh.surfaces[surface as usize].material as u32)
             }
             _ => Some(0),
         };
-        let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind);
+        let part = |side: usize| self.stored.reached[side].middle();
+        let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind, part);
+        let whole = has_lobes(scene).then(|| {
+            let values: Vec<f64> = (0..stored.len()).map(|side| per_albedo(side, stored[side])).collect();
+            smooth.with(&values)
+        });
         Picture {
             emitters: &self.emitters,
             field: &self.stored.field,
             weights: weights.to_vec(),
             stored,
             indirect: smooth,
+            whole,
             seed: self.stored.made.seed,
         }
     }
@@ -143,20 +152,27 @@ pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
             "Surfaces show the stored luminance of patches: a mean over each patch, with the noise of the field's random links."
         }
         Detail::Exact => {
-            "Indirect light is interpolated between stored patches: it has the noise of the field's random links and is blurred and too dark where furniture stands on or against a surface (2 % of the eye's illuminance in an example office)."
+            "Indirect light is interpolated between stored patches: it has the noise of the field's random links and is blurred where furniture stands on or against a surface."
         }
     }];
     if detail == Detail::Exact {
         all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and eight in them; unshadowed light may be off by 0.4 %.");
     }
-    all.push("Every pixel is looked at in its centre only: edges are not smoothed, and what is narrower than a pixel may be missed.");
+    all.push("Every pixel is looked at in its centre only, but for the openings of luminaires: edges of surfaces are not smoothed, and what is narrower than a pixel may be missed.");
     if (0..scene.mesh.triangles.len() as u32).any(|t| scene.bsdf(t).specular(1.0).is_some()) {
         all.push("Reflections that carry less than 1e-4 of a pixel's light, and those beyond 24 mirrors or panes, are cut.");
     }
-    if scene.mesh.surfaces.iter().any(|surface| scene.materials[surface.material].bsdf.lobe().is_some()) {
-        all.push("What glossy surfaces reflect in their lobe is left out: their highlights are missing, and their light on other surfaces is in the stored field only. --blocks shows it.");
+    if has_lobes(scene) {
+        all.push(match detail {
+            Detail::Stored => "What glossy surfaces reflect in their lobe is left out: their highlights are missing. Without --preview they are there.",
+            Detail::Exact => "What glossy surfaces reflect in their lobe is sampled by four rays a pixel, which find surfaces as the field has them, shadows blurred. The noise of these rays alone is given for every pixel; it is no interval.",
+        });
     }
     all.into_iter().map(str::to_owned).collect()
+}
+
+fn has_lobes(scene: &Scene) -> bool {
+    scene.mesh.surfaces.iter().any(|surface| scene.materials[surface.material].bsdf.lobe().is_some())
 }
 
 /// A diffuse place seen by a pixel, and how much of its luminance arrives.
@@ -174,7 +190,8 @@ struct Sight {
     places: Vec<Seen>,
 }
 
-/// Takes a picture; `tell` is called with the number of rows done.
+/// Takes a picture; `tell` is called with the number of rows done. Where lobes are sampled, its standard
+/// errors are those of this sampling and of nothing else.
 pub fn render(
     picture: &Picture,
     view: &View,
@@ -184,28 +201,34 @@ pub fn render(
 ) -> (LuminanceImage, Counts) {
     let [width, height] = size;
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let bands: Vec<(Vec<f64>, Counts)> = (0..height.div_ceil(TILE))
+    let noisy = detail == Detail::Exact && picture.whole.is_some();
+    let bands: Vec<(Vec<f64>, Vec<f64>, Counts)> = (0..height.div_ceil(TILE))
         .into_par_iter()
         .map(|band| {
             let rows = TILE.min(height - band * TILE);
             let mut values = vec![0.0; rows * width];
+            let mut squares = vec![0.0; if noisy { rows * width } else { 0 }];
             let mut counts = Counts::default();
             for column in (0..width).step_by(TILE) {
                 let corner = [column, band * TILE];
                 let extent = [TILE.min(width - column), rows];
-                tile(picture, view, size, corner, extent, detail, &mut values, &mut counts);
+                tile(picture, view, size, corner, extent, detail, [&mut values, &mut squares], &mut counts);
             }
             tell(done.fetch_add(rows, std::sync::atomic::Ordering::Relaxed) + rows);
-            (values, counts)
+            (values, squares, counts)
         })
         .collect();
     let mut counts = Counts::default();
     let mut luminance = Vec::with_capacity(width * height);
-    for (values, count) in bands {
+    let mut error = Vec::new();
+    for (values, squares, count) in bands {
         luminance.extend(values);
+        error.extend(squares.into_iter().map(f64::sqrt));
         counts.add(count);
     }
-    (LuminanceImage::new(width, height, Some(*view), luminance), counts)
+    let mut image = LuminanceImage::new(width, height, Some(*view), luminance);
+    image.standard_error_cd_m2 = noisy.then_some(error);
+    (image, counts)
 }
 
 #[allow(clippy::too_many_arguments, reason = "one call, in the loop above")]
@@ -216,18 +239,26 @@ fn tile(
     corner: [usize; 2],
     extent: [usize; 2],
     detail: Detail,
-    values: &mut [f64],
+    [values, squares]: [&mut [f64]; 2],
     counts: &mut Counts,
 ) {
     let mut sights: [Sight; TILE * TILE] = std::array::from_fn(|_| Sight::default());
+    // Lines of sight through the corners of the tile's pixels, row by row.
+    let grid: [Option<DVec3>; (TILE + 1) * (TILE + 1)] = std::array::from_fn(|k| {
+        let at = [corner[0] + k % (TILE + 1), corner[1] + k / (TILE + 1)];
+        (at[0] <= size[0] && at[1] <= size[1]).then(|| view.direction(size, at.map(|x| x as f64))).flatten()
+    });
     for (index, sight) in sights.iter_mut().enumerate().take(extent[1] * TILE) {
         let (column, row) = (index % TILE, index / TILE);
         if column >= extent[0] {
             continue;
         }
-        let at = [(corner[0] + column) as f64 + 0.5, (corner[1] + row) as f64 + 0.5];
-        if let Some(direction) = view.direction(size, at) {
-            sight.look(picture, view.eye, direction, Path::fresh(), counts);
+        let [x, y] = [corner[0] + column, corner[1] + row];
+        if let Some(direction) = view.direction(size, [x as f64 + 0.5, y as f64 + 0.5]) {
+            let first = row * (TILE + 1) + column;
+            let corners = [first, first + 1, first + TILE + 1, first + TILE + 2].map(|k| grid[k]);
+            let beam = Beam::of_pixel(view.eye, corners, (y * size[0] + x) as u64);
+            sight.look(picture, view.eye, direction, &Path::fresh(beam), counts);
         }
     }
     let out = |index: usize| index / TILE * size[0] + corner[0] + index % TILE;
@@ -243,6 +274,12 @@ fn tile(
         let number = (corner[1] / TILE) * size[0].div_ceil(TILE) + corner[0] / TILE;
         let mut rng = Rng::new(picture.seed, STREAM, number as u64);
         direct::add(picture, &sights, &mut rng, counts, |index, luminance| values[out(index)] += luminance);
+        if picture.whole.is_some() {
+            lobes::add(picture, &sights, &mut rng, counts, |index, luminance, square| {
+                values[out(index)] += luminance;
+                squares[out(index)] += square;
+            });
+        }
     }
 }
 
@@ -251,22 +288,23 @@ fn tile(
 struct Path {
     share: f64,
     bounces: u32,
+    beam: Option<Beam>,
     bodies: BodiesMet,
 }
 
 impl Path {
-    fn fresh() -> Self {
-        Self { share: 1.0, bounces: 0, bodies: BodiesMet::default() }
+    fn fresh(beam: Option<Beam>) -> Self {
+        Self { share: 1.0, bounces: 0, beam, bodies: BodiesMet::default() }
     }
 }
 
 impl Sight {
     /// Follows a ray and its branches.
-    fn look(&mut self, picture: &Picture, origin: DVec3, direction: DVec3, path: Path, counts: &mut Counts) {
+    fn look(&mut self, picture: &Picture, origin: DVec3, direction: DVec3, path: &Path, counts: &mut Counts) {
         let scene = picture.emitters.scene;
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
-        self.luminance += path.share * picture.openings((origin, direction), hit.as_ref(), &path.bodies);
+        self.luminance += path.share * picture.openings((origin, direction), hit.as_ref(), path);
         let Some(hit) = hit else {
             counts.escaped += 1;
             return;
@@ -295,8 +333,9 @@ impl Sight {
             [(reflected, point + lift, direction + 2.0 * cos * normal), (passed, point - lift, direction)];
         for (share, origin, direction) in onward {
             let (share, bounces) = (path.share * share, path.bounces + 1);
-            let mut next = Path { share, bounces, bodies: path.bodies.clone() };
+            let mut next = Path { share, bounces, beam: path.beam, bodies: path.bodies.clone() };
             if direction.dot(normal) > 0.0 {
+                next.beam = path.beam.map(|beam| beam.reflected(point, normal));
                 next.bodies.reflected(scene, hit.triangle);
             } else {
                 next.bodies.passed(scene, hit.triangle);
@@ -308,27 +347,25 @@ impl Sight {
                 counts.cut += 1;
                 continue;
             }
-            self.look(picture, origin, direction, next, counts);
+            self.look(picture, origin, direction, &next, counts);
         }
     }
 }
 
 impl Picture<'_> {
-    /// Luminance of all openings along a ray before what it meets, cd/m². A luminaire's own housing does
-    /// not hide its opening.
-    fn openings(&self, ray: (DVec3, DVec3), hit: Option<&Hit>, bodies: &BodiesMet) -> f64 {
-        let scene = self.emitters.scene;
-        let mut sum = 0.0;
-        for (index, luminaire) in scene.luminaires.iter().enumerate() {
-            if bodies.shut(luminaire) {
-                continue;
-            }
-            if let Some((luminance, distance_m)) = self.emitters.opening_along(index, ray.0, ray.1) {
-                let weight = self.weights[scene.channel_of[index]];
-                sum += weight * luminance * self.emitters.uncovered(index, ray, distance_m, hit);
-            }
-        }
-        sum
+    /// Sum over the channels under the light scene.
+    fn weighted(&self, channels: &[f64]) -> f64 {
+        channels.iter().zip(&self.weights).map(|(value, weight)| value * weight).sum()
+    }
+
+    /// Luminance of a place but for its lobe, as the field has it: emitted, and all diffuse light.
+    fn whole(&self, landing: &Landing) -> f64 {
+        let side = self.field.patches().side_at(landing.triangle, landing.barycentric, landing.front);
+        let diffuse = self.whole.as_ref().map_or(self.stored[side], |whole| {
+            let (reflectance, transmittance) = self.emitters.scene.bsdf(landing.triangle).diffuse();
+            (reflectance + transmittance) * whole.at(side, landing.point)
+        });
+        self.emitted(landing.triangle) + diffuse
     }
 
     /// Luminance that a surface emits itself.

@@ -4,14 +4,16 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Effort;
+use super::covered::{Cavities, Cover, place};
 use super::highlights::{self, Highlights};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
 use super::refine::refine;
 use crate::emitters::Emitters;
-use crate::field::{LuminanceField, Patches};
+use crate::field::{LuminanceField, Patches, Reached};
 use crate::rng::{Rng, Stratified};
 use crate::sphere;
 
@@ -29,6 +31,15 @@ const MOST_SWEEPS: u32 = 100;
 /// places nearer by a thousandth of what they still lack.
 const BALANCED: u32 = 8;
 
+/// Direct light of one patch side, and where its random numbers go on.
+struct FirstLight {
+    /// Luminance that luminaires and their images make here, per channel.
+    direct: Vec<f64>,
+    /// Whether any sample saw a luminaire.
+    lit: bool,
+    rng: Rng,
+}
+
 /// What one patch side receives.
 struct Collected {
     /// The part of `first` that luminaires and their images make here.
@@ -37,6 +48,19 @@ struct Collected {
     first: Vec<f64>,
     /// Patch sides where its links end.
     links: Vec<u32>,
+    /// Number of places from which the links start.
+    places: u32,
+    /// The part of it that light reaches.
+    reached: Reached,
+}
+
+/// A field, and what pictures want to know of it.
+pub(super) struct Parts {
+    pub field: LuminanceField,
+    /// The part of it that luminaires and their images make at first hand.
+    pub direct: LuminanceField,
+    /// Per patch side.
+    pub reached: Vec<Reached>,
 }
 
 /// Builds the field from stream 0 of `seed`.
@@ -46,16 +70,11 @@ pub(super) fn field(
     effort: &Effort,
     seed: u64,
 ) -> LuminanceField {
-    parts(emitters, highlights, effort, seed).0
+    parts(emitters, highlights, effort, seed).field
 }
 
-/// The field, and the part of it that luminaires and their images make at first hand.
-pub(super) fn parts(
-    emitters: &Emitters,
-    highlights: &Highlights,
-    effort: &Effort,
-    seed: u64,
-) -> (LuminanceField, LuminanceField) {
+/// [`field`] with its parts.
+pub(super) fn parts(emitters: &Emitters, highlights: &Highlights, effort: &Effort, seed: u64) -> Parts {
     let scene = emitters.scene;
     let diffuse = |triangle: usize| scene.bsdf(triangle as u32).specular(1.0).is_none();
     let area_m2: f64 = (0..scene.mesh.triangles.len())
@@ -68,11 +87,19 @@ pub(super) fn parts(
         refine(emitters, &mut patches);
     }
     let channels = scene.channels.len();
-    let collected: Vec<Collected> = (0..patches.sides())
+    let (lights, lit): (Vec<FirstLight>, Vec<bool>) = (0..patches.sides())
         .into_par_iter()
         .map(|side| {
-            collect(emitters, highlights, &patches, effort, side, &mut Rng::new(seed, 0, side as u64))
+            let light = first_light(emitters, &patches, side, Rng::new(seed, 0, side as u64));
+            let lit = light.lit;
+            (light, lit)
         })
+        .unzip();
+    let cavities = Cavities::new(emitters, &patches, &lit, seed);
+    let collected: Vec<Collected> = lights
+        .into_par_iter()
+        .enumerate()
+        .map(|(side, light)| collect(&cavities, highlights, effort, side, light))
         .collect();
     let mut field = LuminanceField::dark(patches, channels);
     let mut direct = field.clone();
@@ -80,50 +107,61 @@ pub(super) fn parts(
         field.at_mut(side).copy_from_slice(&entry.first);
         direct.at_mut(side).copy_from_slice(&entry.direct);
     }
-    sweep(emitters, effort, &mut field, &collected);
-    (field, direct)
+    sweep(emitters, &mut field, &collected);
+    Parts { field, direct, reached: collected.into_iter().map(|entry| entry.reached).collect() }
+}
+
+fn first_light(emitters: &Emitters, patches: &Patches, side: usize, mut rng: Rng) -> FirstLight {
+    let scene = emitters.scene;
+    let mut direct = vec![0.0; scene.channels.len()];
+    let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
+    if !(reflectance + transmittance > 0.0) {
+        return FirstLight { direct, lit: false, rng };
+    }
+    let mut scratch = Vec::new();
+    let sequence = Stratified::new(&mut rng);
+    for sample in 0..DIRECT_SAMPLES {
+        let at = place(emitters, patches, side, sequence.point(sample, &mut rng));
+        add_direct(emitters, &at, f64::INFINITY, &mut rng, &mut scratch, &mut direct);
+    }
+    for value in &mut direct {
+        *value /= f64::from(DIRECT_SAMPLES);
+    }
+    let lit = direct.iter().any(|value| *value > 0.0);
+    FirstLight { direct, lit, rng }
 }
 
 fn collect(
-    emitters: &Emitters,
+    cavities: &Cavities,
     highlights: &Highlights,
-    patches: &Patches,
     effort: &Effort,
     side: usize,
-    rng: &mut Rng,
+    FirstLight { mut direct, mut rng, .. }: FirstLight,
 ) -> Collected {
+    let (emitters, patches, rng) = (cavities.emitters, cavities.patches, &mut rng);
     let scene = emitters.scene;
     let channels = scene.channels.len();
-    let triangle = patches.triangle(side);
-    let (reflectance, transmittance) = scene.bsdf(triangle).diffuse();
-    let mut first = vec![0.0; channels];
-    let mut sight = Sight::new(channels);
+    let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
     let total = reflectance + transmittance;
+    let cover = cavities.covers[side];
     if !(total > 0.0) {
-        return Collected { direct: first.clone(), first, links: Vec::new() };
+        let (first, reached) = (direct.clone(), Reached::Whole);
+        return Collected { direct, first, links: Vec::new(), places: 0, reached };
     }
-    let landing = |u: [f64; 3]| {
-        let place = patches.place(&scene.mesh, side, u);
-        let front = side.is_multiple_of(2);
-        let normal = if front { place.normal } else { -place.normal };
-        let barycentric = [0.0; 2];
-        Landing { weight: 1.0, to_eye: normal, point: place.point, normal, triangle, barycentric, front }
-    };
-    let sequence = Stratified::new(rng);
-    for sample in 0..DIRECT_SAMPLES {
-        let at = landing(sequence.point(sample, rng));
-        add_direct(emitters, &at, f64::INFINITY, rng, &mut sight.scratch, &mut first);
-    }
-    for value in &mut first {
-        *value /= f64::from(DIRECT_SAMPLES);
-    }
-    let direct = first.clone();
+    let mut sight = Sight::new(channels);
     let (places, directions) = (Stratified::new(rng), Stratified::new(rng));
     let mut bundles = Vec::new();
     let mut links = Vec::with_capacity(effort.links as usize);
     let mut met = vec![0.0; channels];
+    let mut taken = Vec::new();
     for link in 0..effort.links {
-        let at = landing(places.point(link, rng));
+        let at = place(emitters, patches, side, places.point(link, rng));
+        if cover == Cover::Partial {
+            if !cavities.is_reached(&at, side, rng, &mut sight) {
+                continue;
+            }
+            taken.push(at);
+        }
         let [choice, u, v] = directions.point(link, rng);
         // An opal gathers from both sides in the ratio of reflectance to transmittance.
         let same_side = choice * total < reflectance;
@@ -155,20 +193,45 @@ fn collect(
             links.push(patches.side_at(landing.triangle, landing.barycentric, landing.front) as u32);
         }
     }
+    let (places, reached) = match cover {
+        Cover::Clear => (effort.links, Reached::Whole),
+        Cover::Dark => (effort.links, Reached::Dark),
+        Cover::Partial => {
+            direct = direct_at(emitters, &taken, rng);
+            let points: Vec<DVec3> = taken.iter().map(|at| at.point).collect();
+            (taken.len() as u32, Reached::part(&points, effort.links))
+        }
+    };
+    let mut first = direct.clone();
     for (value, met) in first.iter_mut().zip(&met) {
-        *value += met * total / f64::from(effort.links.max(1));
+        *value += met * total / f64::from(places.max(1));
     }
-    Collected { direct, first, links }
+    Collected { direct, first, links, places, reached }
+}
+
+/// Mean luminance that direct light makes at some of the places.
+fn direct_at(emitters: &Emitters, places: &[Landing], rng: &mut Rng) -> Vec<f64> {
+    let mut direct = vec![0.0; emitters.scene.channels.len()];
+    let count = places.len().min(DIRECT_SAMPLES as usize);
+    let mut scratch = Vec::new();
+    for number in 0..count {
+        let at = &places[number * places.len() / count];
+        add_direct(emitters, at, f64::INFINITY, rng, &mut scratch, &mut direct);
+    }
+    for value in &mut direct {
+        *value /= count.max(1) as f64;
+    }
+    direct
 }
 
 /// L(side) = first + (ρ + τ)/n Σ L(link), in place, in a fixed order.
-fn sweep(emitters: &Emitters, effort: &Effort, field: &mut LuminanceField, collected: &[Collected]) {
+fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: &[Collected]) {
     let scene = emitters.scene;
     let channels = scene.channels.len();
     let factor: Vec<f64> = (0..collected.len())
         .map(|side| {
             let (reflectance, transmittance) = scene.bsdf(field.patches().triangle(side)).diffuse();
-            (reflectance + transmittance) / f64::from(effort.links.max(1))
+            (reflectance + transmittance) / f64::from(collected[side].places.max(1))
         })
         .collect();
     let mut sums = vec![0.0; channels];
@@ -187,7 +250,7 @@ fn sweep(emitters: &Emitters, effort: &Effort, field: &mut LuminanceField, colle
                     *sum += value;
                 }
             }
-            let area = field.patches().area_m2(side);
+            let area = field.patches().area_m2(side) * entry.reached.share();
             let stored = field.at_mut(side);
             for ((stored, first), sum) in stored.iter_mut().zip(&entry.first).zip(&sums) {
                 let next = first + factor[side] * sum;
@@ -210,7 +273,7 @@ fn balance(field: &mut LuminanceField, collected: &[Collected], factor: &[f64]) 
         let (mut fed, mut lost) = (0.0, 0.0);
         for (side, entry) in collected.iter().enumerate() {
             let sum: f64 = entry.links.iter().map(|&link| field.at(link as usize)[channel]).sum();
-            let area = field.patches().area_m2(side);
+            let area = field.patches().area_m2(side) * entry.reached.share();
             fed += area * entry.first[channel];
             lost += area * (field.at(side)[channel] - factor[side] * sum);
         }

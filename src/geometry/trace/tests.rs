@@ -117,3 +117,39 @@ fn simd_level_and_visiting_order_do_not_change_any_hit() {
         assert_eq!(open < 0.5, nearest < 0.5);
     }
 }
+
+/// Catches: a shaft called clear in which something stands.
+#[test]
+fn what_is_called_clear_lets_every_ray_pass() {
+    let mut state = 5;
+    let mut point = |edge: f64| edge * DVec3::from_array([(); 3].map(|()| random(&mut state) - 0.5));
+    let mut mesh = Mesh::default();
+    let surface = mesh.add_surface("shards", 0, false);
+    for _ in 0..300 {
+        let at = point(10.0);
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend([at, at + point(0.4), at + point(0.4)]);
+        mesh.triangles
+            .push(super::super::mesh::Triangle { vertices: [first, first + 1, first + 2], surface });
+    }
+    let tracer = Tracer::build(&mesh, &lambert());
+    let (mut clear, mut hidden_behind_twins) = (0, 0);
+    for _ in 0..3000 {
+        let (a, b) = (point(8.0), point(8.0));
+        let from: Vec<DVec3> = (0..4).map(|_| a + point(0.3)).collect();
+        let to: Vec<DVec3> = (0..4).map(|_| b + point(0.8)).collect();
+        let blocked = || {
+            let blocks = |p: &DVec3, q: &DVec3| {
+                tracer.transmittance(*p, (*q - *p).normalize(), p.distance(*q), &[]) < 1.0
+            };
+            from.iter().any(|p| to.iter().any(|q| blocks(p, q)))
+        };
+        if tracer.is_clear(&from, &to, b - a, &[]) {
+            clear += 1;
+            assert!(!blocked(), "a ray from {a} to {b} is blocked");
+        }
+        // Broken twin: a shaft to the first point only.
+        hidden_behind_twins += i32::from(tracer.is_clear(&from, &to[..1], b - a, &[]) && blocked());
+    }
+    assert!(clear > 300 && hidden_behind_twins > 5, "{clear} {hidden_behind_twins}");
+}

@@ -11,6 +11,7 @@ use crate::photometry::{self, IntensityDistribution, Opening};
 use crate::project::choices::{EmergencyChoice, Factor, OpeningChoice};
 use crate::project::context::{Context, SMALL_FILE};
 use crate::project::diagnostics::Diagnostic;
+use crate::project::photometric::is_plain;
 use crate::project::schema::{At, File, LuminaireSection};
 use crate::units::Lumens;
 
@@ -211,7 +212,13 @@ struct Source {
 }
 
 fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
-    let bytes = context.read(file, SMALL_FILE)?;
+    let mut bytes = context.read(file, SMALL_FILE)?;
+    if let Some(name) = photometry::tilt_file(&bytes).filter(|name| is_plain(name)) {
+        let folder = file.get_ref().rfind(['/', '\\']).map_or("", |at| &file.get_ref()[..=at]);
+        if let Ok(tilt) = context.read_path(&format!("{folder}{name}"), SMALL_FILE) {
+            bytes = photometry::with_tilt(&bytes, &tilt);
+        }
+    }
     from_bytes(&bytes, file.get_ref(), context)
 }
 
@@ -230,8 +237,8 @@ fn from_bytes(bytes: &[u8], file: &str, context: &mut Context) -> Option<Source>
                 power_w: photometry.power_w,
                 declared_ra: photometry.colour_rendering,
                 c0_azimuth_deg: match photometry.format {
-                    photometry::Format::Eulumdat => -90.0,
-                    photometry::Format::Lm63 { .. } | photometry::Format::Tm33 => 0.0,
+                    photometry::Format::Eulumdat | photometry::Format::Tm33 => -90.0,
+                    photometry::Format::Lm63 { .. } => 0.0,
                 },
             })
         }

@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 
 use super::super::ReportError;
 use super::{Batch, format_name};
-use crate::lamp::outdoor::{Outdoor, ZONES};
+use crate::lamp::outdoor::{BUG_KNOWN, D_KNOWN, Outdoor, ZONES, g_star_known};
 use crate::lamp::{self, Lamp, rules};
 use crate::photometry::{Finding, Opening};
 
@@ -39,7 +39,17 @@ struct Classes {
     bug: String,
     bug_zones_lm: BTreeMap<&'static str, f64>,
     street_c_deg: f64,
-    limits: &'static str,
+    limits: Limits,
+}
+
+/// How well the limits of the classes are known.
+#[derive(Serialize)]
+struct Limits {
+    g_star: &'static str,
+    d: &'static str,
+    b: &'static str,
+    u: &'static str,
+    g: &'static str,
 }
 
 struct Shape(Opening);
@@ -125,6 +135,12 @@ fn classes(outdoor: &Outdoor) -> Classes {
         bug: format!("B{b} U{u} G{g}"),
         bug_zones_lm: ZONES.into_iter().zip(outdoor.bug.zones_lm).collect(),
         street_c_deg: lamp::c_deg(outdoor.bug.front_azimuth_deg),
-        limits: "unverified",
+        limits: Limits {
+            g_star: g_star_known(outdoor.g_star).key(),
+            d: D_KNOWN.key(),
+            b: BUG_KNOWN[0].key(),
+            u: BUG_KNOWN[1].key(),
+            g: BUG_KNOWN[2].key(),
+        },
     }
 }

@@ -10,7 +10,7 @@ use super::opening::shown;
 use super::{Batch, decimal, format_name, lint};
 use crate::lamp::info::{Info, info};
 use crate::lamp::luminance::GAMMAS_DEG;
-use crate::lamp::outdoor::G_GAMMAS_DEG;
+use crate::lamp::outdoor::{BUG_KNOWN, D_KNOWN, G_GAMMAS_DEG, Known, g_star_known};
 use crate::lamp::{Lamp, c_deg, rules};
 use crate::photometry::{Format, Opening, Symmetry};
 use crate::units::Undefined;
@@ -90,8 +90,8 @@ impl Page<'_> {
     fn format(&self) -> String {
         let name = format_name(self.info.format);
         match self.info.format {
-            Format::Eulumdat => name.to_owned(),
-            Format::Lm63 { .. } | Format::Tm33 => {
+            Format::Eulumdat | Format::Tm33 => name.to_owned(),
+            Format::Lm63 { .. } => {
                 format!("{name} ({})", self.say("its 0° plane, along the length, is C90 here"))
             }
         }
@@ -190,6 +190,14 @@ impl Page<'_> {
         )
     }
 
+    /// How well the limits of a class are known.
+    fn known(&self, known: Known) -> &'static str {
+        match known {
+            Known::OneSource => self.say("limits from one public source"),
+            Known::Unverified => self.say("limits unverified"),
+        }
+    }
+
     /// Of use for road and area luminaires only, and short for the others.
     fn intensity_class(&self) -> String {
         let outdoor = &self.info.outdoor;
@@ -205,12 +213,12 @@ impl Page<'_> {
             self.say("by"),
             self.say("cd/klm"),
             largest.join(" · "),
-            self.say("unverified")
+            self.known(g_star_known(outdoor.g_star))
         )
     }
 
     fn glare_index(&self) -> String {
-        let unverified = self.say("unverified");
+        let unverified = self.known(D_KNOWN);
         match &self.info.outdoor.glare_index {
             Err(undefined) => self.no_value(undefined),
             Ok((index, class)) => format!(
@@ -236,8 +244,13 @@ impl Page<'_> {
         } else {
             format!("{} C{}", self.say("street towards"), c_deg(bug.front_azimuth_deg))
         };
-        let (by, unverified) = (self.say("by"), self.say("unverified"));
-        format!("B{b} U{u} G{g} {by} {}; {street} (TM-15-11, {unverified})", decided.join(", "))
+        let known: Vec<String> = ["B", "U", "G"]
+            .into_iter()
+            .zip(BUG_KNOWN)
+            .map(|(letter, known)| format!("{letter} {}", self.known(known)))
+            .collect();
+        let (by, known) = (self.say("by"), known.join(", "));
+        format!("B{b} U{u} G{g} {by} {}; {street} (TM-15-11: {known})", decided.join(", "))
     }
 
     fn zones(&self, text: &mut String) {

@@ -42,8 +42,8 @@ pub(super) const FAULTS: &[(&str, &str)] = &[
         "в типе C допустимы 0°, 0–90°, 0–180°, 90–270° или 0–360°",
     ),
     (
-        "paste the tilt data after TILT=INCLUDE, or use TILT=NONE",
-        "вставьте данные о наклоне после TILT=INCLUDE или задайте TILT=NONE",
+        "put that file beside this one, or paste its data after TILT=INCLUDE",
+        "положите тот файл рядом с этим или вставьте его данные после TILT=INCLUDE",
     ),
     (
         "intensities are per 1000 lm: write the flux into this line",
@@ -60,8 +60,8 @@ pub(super) const FAULTS: &[(&str, &str)] = &[
         "выгрузите каждый излучатель отдельным файлом или светильник целиком",
     ),
     (
-        "only type C is read from TM-33: export the file as type C",
-        "из TM-33 читается только тип C: выгрузите файл в типе C",
+        "types A, B and C are read: export the file as type C",
+        "читаются типы A, B и C: выгрузите файл в типе C",
     ),
     ("only luminous intensities (cd) are read", "читаются только силы света (кд)"),
     // What is wrong.
@@ -118,12 +118,14 @@ pub(super) const FAULTS: &[(&str, &str)] = &[
     ("{} {}, expected a whole number from {}", "{} {} – должно быть целое число не меньше {}"),
     ("{} photometries, more than {}", "фотометрий: {}, больше допустимых {}"),
     ("{} photometries: {}", "фотометрий: {} – {}"),
-    ("{} emitters with luminous intensities, one is needed", "излучателей с силами света: {}, нужен один"),
-    ("photometry of type {}", "фотометрия типа {}"),
+    ("no emitter has luminous intensities", "ни у одного излучателя нет сил света"),
+    ("the emitters do not cover the same angles", "излучатели заданы в разных пределах углов"),
+    ("photometry of type '{}'", "фотометрия типа «{}»"),
+    ("{} is {}, but {} are there", "{} равно {}, а значений {}"),
     ("intensities are {}, not luminous", "силы излучения – {}, а не силы света"),
     (
-        "direction h {}°, v {}°, expected 0–360° and 0–180°",
-        "направление h {}°, v {}°, допустимы 0–360° и 0–180°",
+        "direction h {}°, v {}°, expected {}–{}° and {}–{}°",
+        "направление h {}°, v {}°, допустимо {}–{}° и {}–{}°",
     ),
     ("intensity {} cd at h {}°, v {}° is negative", "сила света {} кд при h {}°, v {}° отрицательна"),
     ("{} vertical and {} horizontal angles", "вертикальных углов {}, горизонтальных {}"),

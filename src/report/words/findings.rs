@@ -225,6 +225,14 @@ const FINDINGS: &[(&str, &str)] = &[
         "the flux is uncertain by about {} % from interpolation alone, the illuminance in the beam by more",
         "только из-за интерполяции поток не определён в пределах {} %, освещённость в пучке – ещё больше",
     ),
+    (
+        "{} {}° stands where the step of {}° that all others keep asks for {}°",
+        "{} {}° стоит там, где по шагу {}°, общему для остальных углов, должно быть {}°",
+    ),
+    (
+        "if it is a misprint, what was measured {}° away is used there, and its neighbours are interpolated towards it",
+        "если это опечатка, там взято измеренное на {}° в стороне, и к нему интерполируются соседние значения",
+    ),
     ("{} photometry, resampled to type C in steps of {}°", "фотометрия {}, пересчитана в тип C с шагом {}°"),
     ("type A", "типа A"),
     ("type B", "типа B"),
@@ -285,6 +293,52 @@ const FINDINGS: &[(&str, &str)] = &[
         "names may be shown wrongly, numbers are not affected",
         "названия могут отображаться неверно, на числа это не влияет",
     ),
+    ("{} emitters are added into one distribution", "излучателей: {}, сложены в одну кривую"),
+    (
+        "they shine from one place: illuminance nearer than about ten times their distance from each other, and the glare of each, are approximate",
+        "они светят из одного места: освещённость ближе примерно десяти расстояний между ними и блёскость каждого приближённые",
+    ),
+    (
+        "h = 0° is taken across the luminaire's length, as the schema names its faces",
+        "h = 0° принято поперёк длины светильника, как в схеме названы его грани",
+    ),
+    (
+        "where the maker means LM-63's 0° plane, all planes are turned by 90°: crosswise and endwise are exchanged; set `rotate`",
+        "если изготовитель имел в виду плоскость 0° по LM-63, все плоскости повёрнуты на 90°: поперёк и вдоль перепутаны; задайте `rotate`",
+    ),
+    ("the emitter's flux depends on tilt", "поток излучателя зависит от наклона"),
+    (
+        "not applied: mounted at another tilt, flux and illuminance differ",
+        "не учтено: при другом наклоне поток и освещённость изменятся",
+    ),
+    ("not read: {}", "не прочитано: {}"),
+    (
+        "light is computed from the luminous intensities alone; nothing depends on the colour of light",
+        "свет рассчитывается только по силам света; от цвета света ничего не зависит",
+    ),
+    ("emitter spectra: {}", "спектры излучателей: {}"),
+    ("angular spectra: {}", "спектры по направлениям: {}"),
+    ("angular colours: {}", "цвет по направлениям: {}"),
+    ("radiant intensities: {}", "силы излучения: {}"),
+    ("photon intensities: {}", "фотонные силы: {}"),
+    ("illuminances: {}", "освещённости: {}"),
+    ("irradiances: {}", "энергетические освещённости: {}"),
+    ("photon flux densities: {}", "плотности потока фотонов: {}"),
+    ("spectral irradiances: {}", "спектральные энергетические освещённости: {}"),
+    ("channel multipliers: {}", "множители каналов: {}"),
+    ("luminous areas on top of the luminaire", "светящие площади на верху светильника"),
+    (
+        "an opening is seen from below here: the luminance from above is undefined",
+        "отверстие здесь видно снизу: яркость сверху не определена",
+    ),
+    (
+        "{} luminous areas of {} m² in all are taken as the rectangle around them, {} m²",
+        "светящих площадей: {}, всего {} м²; взят прямоугольник вокруг них, {} м²",
+    ),
+    (
+        "luminance is {} times that of the areas themselves, UGR lower by {}",
+        "яркость составляет {} от яркости самих площадей, UGR ниже на {}",
+    ),
     ("used by the emitters {}", "используется излучателями «{}»"),
     (
         "the product may set another flux per emitter, which is not read",
@@ -327,109 +381,5 @@ const FINDINGS: &[(&str, &str)] = &[
 ];
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Where findings and errors of photometric files are worded.
-    const SOURCES: &[&str] = &[
-        include_str!("../../glare/ugr_table.rs"),
-        include_str!("../../lamp/beam.rs"),
-        include_str!("../../lamp/flux.rs"),
-        include_str!("../../lamp/lint.rs"),
-        include_str!("../../lamp/luminance.rs"),
-        include_str!("../../lamp/mod.rs"),
-        include_str!("../../lamp/nodes.rs"),
-        include_str!("../../lamp/outdoor.rs"),
-        include_str!("../../lamp/spacing.rs"),
-        include_str!("../../lamp/ugr.rs"),
-        include_str!("../../photometry/findings.rs"),
-        include_str!("../../photometry/gldf.rs"),
-        include_str!("../../photometry/grid.rs"),
-        include_str!("../../photometry/ies.rs"),
-        include_str!("../../photometry/ies_goniometer.rs"),
-        include_str!("../../photometry/ies_head.rs"),
-        include_str!("../../photometry/ies_opening.rs"),
-        include_str!("../../photometry/ldt.rs"),
-        include_str!("../../photometry/ldt_head.rs"),
-        include_str!("../../photometry/mod.rs"),
-        include_str!("../../photometry/numbers.rs"),
-        include_str!("../../photometry/tm33.rs"),
-    ];
-
-    /// Said to programmers, or not a sentence.
-    const NOT_TOLD: &[&str] = &["there is at least one step", "filtered above", "{}:{}: {}\\n  hint: {}"];
-
-    /// String literals of the program part of a source that read like words, `{…}` as `{}`.
-    fn literals(source: &str) -> Vec<String> {
-        let code = source.split("#[cfg(test)]").next().unwrap_or_default();
-        let code: String =
-            code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
-        let mut found = Vec::new();
-        let mut rest = code.as_str();
-        while let Some(start) = rest.find('"') {
-            let body = &rest[start + 1..];
-            let mut end = 0;
-            while !body[end..].starts_with('"') {
-                end += if body[end..].starts_with('\\') {
-                    2
-                } else {
-                    body[end..].chars().next().map_or(1, char::len_utf8)
-                };
-            }
-            let joined = body[..end].split("\\\n").map(str::trim_start).collect::<String>();
-            let (mut text, mut depth) = (String::new(), 0);
-            for c in joined.replace("\\\"", "\"").chars() {
-                depth += i32::from(c == '{');
-                if depth == 0 || (depth == 1 && c == '{') {
-                    text.push(c);
-                }
-                if c == '}' {
-                    text.push(c);
-                    depth -= 1;
-                }
-            }
-            let word = |word: &str| word.len() > 2 && word.bytes().all(|byte| byte.is_ascii_lowercase());
-            if text.contains(' ') && text.split(|c: char| !c.is_alphanumeric()).any(word) {
-                found.push(text);
-            }
-            rest = &body[end + 1..];
-        }
-        found
-    }
-
-    /// Catches: a finding or an error that a Russian reader would get in English; a pattern that nobody says.
-    #[test]
-    fn whatever_is_found_has_its_translation() {
-        let said: Vec<String> = SOURCES.iter().flat_map(|source| literals(source)).collect();
-        assert!(said.len() > 150, "{}", said.len());
-        let known =
-            |text: &str| FINDINGS.iter().chain(FAULTS).chain(SENTENCES).any(|(english, _)| *english == text);
-        let missing: Vec<&String> =
-            said.iter().filter(|text| !known(text) && !NOT_TOLD.contains(&text.as_str())).collect();
-        assert!(missing.is_empty(), "no translation of {missing:#?}");
-        let whole = SOURCES.concat();
-        for (english, russian) in FINDINGS.iter().chain(FAULTS) {
-            let longest = english.split("{}").max_by_key(|piece| piece.len()).unwrap_or_default().trim();
-            assert!(
-                said.iter().any(|text| text == english) || whole.contains(longest),
-                "nobody says {english}"
-            );
-            assert_eq!(english.matches("{}").count(), russian.matches("{}").count(), "{english}");
-        }
-    }
-
-    /// Catches: what a file says translated or given a decimal comma; a sentence within a sentence left out.
-    #[test]
-    fn quotes_stay_and_parts_are_looked_up() {
-        let ru = |text| found(Lang::Ru, text).into_owned();
-        assert_eq!(
-            ru("expected the intensity at 22.5°, γ 45°, found '1.5x lower'"),
-            "ожидалось: сила света (22,5°, γ 45°); найдено «1.5x lower»"
-        );
-        assert_eq!(
-            ru("Ē is 5.7 % lower than the rated flux suggests; set `flux` to choose"),
-            "Ē на 5,7 % ниже, чем следует из заявленного потока; выбрать поток можно ключом `flux`"
-        );
-        assert_eq!(found(Lang::En, "the file is empty"), "the file is empty");
-    }
-}
+#[path = "findings_tests.rs"]
+mod tests;

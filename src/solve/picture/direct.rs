@@ -12,6 +12,7 @@ use glam::DVec3;
 
 use super::{Counts, Picture, Seen, Sight, TILE};
 use crate::emitters::{Arrival, Emitters, Source, unshadowed};
+use crate::photometry::Opening;
 use crate::query::Kernel;
 use crate::rng::Rng;
 
@@ -29,15 +30,15 @@ const AT_HAND: f64 = 1.5;
 /// Largest error of a plane through the unshadowed illuminances of a tile, checked at a fourth point.
 const FLAT: f64 = 0.004;
 
-/// Points of an opening for the pixels of a tile: Roberts' additive sequence with the plastic number,
+/// Points of a square, such as of an opening for the pixels of a tile: Roberts' additive sequence with the plastic number,
 /// randomly shifted, so that each point is uniform and neighbours in the sequence lie far apart.
 #[derive(Clone, Copy)]
-struct Points {
-    shift: [f64; 2],
+pub(super) struct Points {
+    pub shift: [f64; 2],
 }
 
 impl Points {
-    fn point(self, number: u32) -> [f64; 2] {
+    pub(super) fn point(self, number: u32) -> [f64; 2] {
         const STEP: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
         std::array::from_fn(|k| (self.shift[k] + f64::from(number) * STEP[k]).fract())
     }
@@ -98,7 +99,8 @@ pub(super) fn add(
             if exact.iter().all(|lx| !(*lx > 0.0)) {
                 continue;
             }
-            let rays = rays_wanted(picture, source, &spots, counts);
+            let clear = flat && is_clear(picture.emitters, source, &spots);
+            let rays = if clear { 0 } else { rays_wanted(picture, source, &spots, counts) };
             for (index, (spot, lx)) in spots.iter().zip(exact).enumerate() {
                 if lx > 0.0 && picture.emitters.lights(source, spot.triangle) {
                     let visible = visible_share(picture, source, spot, index as u32, rays, points, counts);
@@ -107,6 +109,26 @@ pub(super) fn add(
             }
         }
     }
+}
+
+/// Whether nothing at all stands between a flat tile and a luminaire, so that no ray need ask.
+fn is_clear(emitters: &Emitters, source: &Source, spots: &[Spot]) -> bool {
+    let luminaire = emitters.luminaire(source);
+    let opening = luminaire.kind.opening;
+    let is_flat = matches!(opening, Opening::Rect { .. } | Opening::Disc { .. } | Opening::Ellipse { .. });
+    if !(source.is_point() || is_flat && opening.pieces() == 0) {
+        return false;
+    }
+    let corner = |sign: [f64; 2]| {
+        let (x, y) = opening.outline().iter().fold((0.0f64, 0.0f64), |m, p| (m.0.max(p.x), m.1.max(p.y)));
+        luminaire.position + luminaire.world_from_luminaire * DVec3::new(sign[0] * x, sign[1] * y, 0.0)
+    };
+    let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]].map(corner);
+    let mut origins = [DVec3::ZERO; TILE * TILE];
+    for (origin, spot) in origins.iter_mut().zip(spots) {
+        *origin = spot.origin;
+    }
+    emitters.scene.tracer.is_clear(&origins, &corners, spots[0].normal, &luminaire.body)
 }
 
 /// Whether a whole tile sees one plane, each pixel once.
@@ -138,7 +160,11 @@ fn quick_unshadowed(emitters: &Emitters, source: &Source, point: DVec3, normal: 
     let uniform = emitters.luminaire(source).kind.distribution.lambert_flux().is_some();
     // A rule over all pieces of a body would see jumps between them.
     let in_pieces = emitters.luminaire(source).kind.opening.pieces() > 0;
-    if uniform || in_pieces || source.is_point() || distance_m < AT_HAND * source.radius_m {
+    if (uniform && emitters.luminaire(source).kind.opening.is_polygon())
+        || in_pieces
+        || source.is_point()
+        || distance_m < AT_HAND * source.radius_m
+    {
         return unshadowed(emitters, source, point, &Kernel::Planar { normal });
     }
     let cut = normal.dot(towards).abs() < source.radius_m;
@@ -218,6 +244,9 @@ fn visible_share(
     points: Points,
     counts: &mut Counts,
 ) -> f64 {
+    if rays == 0 {
+        return 1.0;
+    }
     if rays == 1 {
         // One ray is all seen or not: how much light it would carry does not matter.
         let u = points.point(number);

@@ -1,0 +1,433 @@
+//! How many directions a node of the field would have to store for a glossy surface, and how near nodes
+//! would have to lie: error against number for a θ–φ grid (the paper's), spherical harmonics and an
+//! octahedral map, exponents 1 to 1 000, beside lobe rays into the diffuse field, which store nothing.
+//! Writes CSV, drawings and a page to reports/directions:
+//!
+//!     cargo run --release --example directions
+#![allow(clippy::print_stdout, reason = "a study prints")]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[path = "figure/mod.rs"]
+mod figure;
+
+use std::error::Error;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt::Write as _;
+use std::path::Path;
+
+use common::{lambert, panel, room};
+use figure::{Figure, Series};
+use gershun::image::{Projection, View};
+use gershun::rng::Rng;
+use gershun::scene::Scene;
+use gershun::solve::picture::{Detail, expose, render};
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+const EXPONENTS: [u32; 5] = [1, 10, 30, 100, 1000];
+/// Pixels across the hemisphere that the node sees.
+const PIXELS: usize = 160;
+/// Directions in which representations are compared with the truth.
+const TESTS: usize = 2000;
+/// Error that counts as good, as a share of the largest luminance.
+const GOOD: f64 = 0.01;
+
+/// Light that arrives at a node: direction and luminance times solid angle times cos.
+struct Incident {
+    name: &'static str,
+    light: Vec<(DVec3, f64)>,
+}
+
+/// What the node reflects by the lobe (n + 2)/(2π) cos^n, mirror direction against incident.
+struct Reflected<'i> {
+    incident: &'i Incident,
+    exponent: u32,
+    /// Cosine below which a lobe is darker than 1e-7 of its peak.
+    least: f64,
+}
+
+impl<'i> Reflected<'i> {
+    fn new(incident: &'i Incident, exponent: u32) -> Self {
+        Self { incident, exponent, least: 1e-7f64.powf(1.0 / f64::from(exponent)) }
+    }
+
+    /// Luminance along a direction of the upper hemisphere.
+    fn along(&self, direction: DVec3) -> f64 {
+        let mirrored = DVec3::new(-direction.x, -direction.y, direction.z);
+        let factor = f64::from(self.exponent + 2) / TAU;
+        let mut sum = 0.0;
+        for (from, weight) in &self.incident.light {
+            let cos = mirrored.dot(*from);
+            if cos > self.least {
+                sum += weight * cos.powi(self.exponent as i32);
+            }
+        }
+        factor * sum
+    }
+
+    fn along_all(&self, directions: &[DVec3]) -> Vec<f64> {
+        directions.par_iter().map(|&direction| self.along(direction)).collect()
+    }
+}
+
+fn direction(theta: f64, phi: f64) -> DVec3 {
+    DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
+}
+
+/// The paper's grid: equal steps in θ and φ, bilinear.
+fn theta_phi(truth: &Reflected, steps: usize, tests: &[DVec3]) -> (usize, Vec<f64>) {
+    let around = 4 * steps;
+    let step = FRAC_PI_2 / steps as f64;
+    let nodes: Vec<DVec3> = (0..(steps + 1) * around)
+        .map(|k| direction((k / around) as f64 * step, (k % around) as f64 * step))
+        .collect();
+    let stored = truth.along_all(&nodes);
+    let look = |w: &DVec3| {
+        let theta = w.z.clamp(-1.0, 1.0).acos() / step;
+        let phi = w.y.atan2(w.x).rem_euclid(TAU) / step;
+        let (i, j) = ((theta as usize).min(steps - 1), phi as usize % around);
+        let (u, v) = (theta - i as f64, phi - phi.floor());
+        let at = |i: usize, j: usize| stored[i * around + j % around];
+        (1.0 - u) * ((1.0 - v) * at(i, j) + v * at(i, j + 1))
+            + u * ((1.0 - v) * at(i + 1, j) + v * at(i + 1, j + 1))
+    };
+    (nodes.len(), tests.iter().map(look).collect())
+}
+
+/// Octahedral map of the hemisphere with cubic interpolation (Catmull–Rom).
+fn octahedral(truth: &Reflected, size: usize, tests: &[DVec3]) -> (usize, Vec<f64>) {
+    let place = |k: usize| 2.0 * k as f64 / (size - 1) as f64 - 1.0;
+    let unfold = |u: f64, v: f64| {
+        let (x, y) = (0.5 * (u + v), 0.5 * (u - v));
+        DVec3::new(x, y, 1.0 - x.abs() - y.abs()).normalize()
+    };
+    let nodes: Vec<DVec3> = (0..size * size).map(|k| unfold(place(k % size), place(k / size))).collect();
+    let stored = truth.along_all(&nodes);
+    let weights = |t: f64| {
+        let (t2, t3) = (t * t, t * t * t);
+        [
+            0.5 * (-t3 + 2.0 * t2 - t),
+            0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+            0.5 * (-3.0 * t3 + 4.0 * t2 + t),
+            0.5 * (t3 - t2),
+        ]
+    };
+    let look = |w: &DVec3| {
+        let p = *w / (w.x.abs() + w.y.abs() + w.z);
+        let on = |t: f64| 0.5 * (t + 1.0) * (size - 1) as f64;
+        let (u, v) = (on(p.x + p.y), on(p.x - p.y));
+        let (i, j) = ((u as usize).min(size - 2), (v as usize).min(size - 2));
+        let (a, b) = (weights(u - i as f64), weights(v - j as f64));
+        // Past an edge the outermost values go on straight.
+        let row = |j: usize| -> f64 {
+            let at = |i: isize| -> f64 {
+                let last = size as isize - 1;
+                let of = |i: isize| stored[j * size + i as usize];
+                if i < 0 {
+                    2.0 * of(0) - of(1)
+                } else if i > last {
+                    2.0 * of(last) - of(last - 1)
+                } else {
+                    of(i)
+                }
+            };
+            (0..4).map(|k| a[k] * at(i as isize + k as isize - 1)).sum()
+        };
+        let line = |j: isize| -> f64 {
+            let last = size as isize - 1;
+            if j < 0 {
+                2.0 * row(0) - row(1)
+            } else if j > last {
+                2.0 * row(size - 1) - row(size - 2)
+            } else {
+                row(j as usize)
+            }
+        };
+        (0..4).map(|k| b[k] * line(j as isize + k as isize - 1)).sum()
+    };
+    (nodes.len(), tests.iter().map(look).collect())
+}
+
+/// Gauss–Legendre nodes and weights on [0, 1].
+fn gauss(n: usize) -> Vec<(f64, f64)> {
+    (0..n)
+        .map(|k| {
+            let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
+            let mut slope = 1.0;
+            for _ in 0..100 {
+                let (mut p, mut before) = (1.0, 0.0);
+                for l in 0..n {
+                    let l = l as f64;
+                    (p, before) = (((2.0 * l + 1.0) * x * p - l * before) / (l + 1.0), p);
+                }
+                slope = n as f64 * (x * p - before) / (x * x - 1.0);
+                let step = p / slope;
+                x -= step;
+                if step.abs() < 1e-15 {
+                    break;
+                }
+            }
+            (0.5 * (x + 1.0), 1.0 / ((1.0 - x * x) * slope * slope))
+        })
+        .collect()
+}
+
+/// Real spherical harmonics of even l + m up to `order` at a direction: those that are even about the
+/// surface, by which a function on the hemisphere is continued below it.
+fn harmonics(order: usize, w: DVec3, out: &mut Vec<f64>) {
+    out.clear();
+    let (z, s) = (w.z, (1.0 - w.z * w.z).max(0.0).sqrt());
+    let phi = w.y.atan2(w.x);
+    let mut diagonal = (1.0 / (4.0 * PI)).sqrt();
+    for m in 0..=order {
+        if m > 0 {
+            diagonal *= -((2 * m + 1) as f64 / (2 * m) as f64).sqrt() * s;
+        }
+        let (mut p, mut before) = (diagonal, 0.0);
+        let m2 = (m * m) as f64;
+        for l in m..=order {
+            if l > m {
+                let l2 = (l * l) as f64;
+                let a = ((4.0 * l2 - 1.0) / (l2 - m2)).sqrt();
+                let b = (((l - 1) * (l - 1)) as f64 - m2) / (4.0 * ((l - 1) * (l - 1)) as f64 - 1.0);
+                (p, before) = (a * (z * p - b.max(0.0).sqrt() * before), p);
+            }
+            if (l + m) % 2 == 1 {
+                continue;
+            }
+            if m == 0 {
+                out.push(p);
+            } else {
+                let (sin, cos) = (m as f64 * phi).sin_cos();
+                out.push(std::f64::consts::SQRT_2 * p * cos);
+                out.push(std::f64::consts::SQRT_2 * p * sin);
+            }
+        }
+    }
+}
+
+fn spherical_harmonics(truth: &Reflected, order: usize, tests: &[DVec3]) -> (usize, Vec<f64>) {
+    let (levels, around) = (gauss(order + 2), 2 * order + 4);
+    let mut nodes = Vec::new();
+    for (z, weight) in &levels {
+        for k in 0..around {
+            let phi = TAU * k as f64 / around as f64;
+            let s = (1.0 - z * z).sqrt();
+            // Twice, for the continuation below.
+            nodes.push((DVec3::new(s * phi.cos(), s * phi.sin(), *z), 2.0 * weight * TAU / around as f64));
+        }
+    }
+    let directions: Vec<DVec3> = nodes.iter().map(|(w, _)| *w).collect();
+    let values = truth.along_all(&directions);
+    let mut basis = Vec::new();
+    harmonics(order, DVec3::Z, &mut basis);
+    let mut coefficients = vec![0.0; basis.len()];
+    for ((w, weight), value) in nodes.iter().zip(&values) {
+        harmonics(order, *w, &mut basis);
+        for (coefficient, y) in coefficients.iter_mut().zip(&basis) {
+            *coefficient += weight * value * y;
+        }
+    }
+    let look = |w: &DVec3| {
+        harmonics(order, *w, &mut basis);
+        coefficients.iter().zip(&basis).map(|(c, y)| c * y).sum()
+    };
+    (coefficients.len(), tests.iter().map(look).collect())
+}
+
+/// Rays drawn by the lobe (density (n + 1)/(2π) cosⁿ) into what is stored without direction.
+fn lobe_rays(
+    truth: &Reflected,
+    image: &dyn Fn(DVec3) -> f64,
+    rays: usize,
+    tests: &[DVec3],
+) -> (usize, Vec<f64>) {
+    let n = f64::from(truth.exponent);
+    let values = tests.iter().enumerate().map(|(number, w)| {
+        let mut rng = Rng::new(7, 1, number as u64);
+        let axis = DVec3::new(-w.x, -w.y, w.z);
+        let frame = frame(axis);
+        let sequence = gershun::rng::Stratified::new(&mut rng);
+        let mut sum = 0.0;
+        for ray in 0..rays {
+            let [u, v, _] = sequence.point(ray as u32, &mut rng);
+            let cos = u.powf(1.0 / (n + 1.0));
+            let sin = (1.0 - cos * cos).max(0.0).sqrt();
+            let from = frame * DVec3::new(sin * (TAU * v).cos(), sin * (TAU * v).sin(), cos);
+            if from.z > 0.0 {
+                sum += image(from) * from.z;
+            }
+        }
+        sum * (n + 2.0) / ((n + 1.0) * rays as f64)
+    });
+    (0, values.collect())
+}
+
+fn frame(axis: DVec3) -> DMat3 {
+    let (x, y) = axis.any_orthonormal_pair();
+    DMat3::from_cols(x, y, axis)
+}
+
+struct Line {
+    light: &'static str,
+    exponent: u32,
+    way: &'static str,
+    numbers: usize,
+    effort: usize,
+    rms: f64,
+    largest: f64,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let size = PIXELS;
+    let materials = vec![lambert("floor", 0.2), lambert("walls", 0.5), lambert("ceiling", 0.7)];
+    let lamp = panel(4000.0, 0.6, DVec3::new(3.0, 2.0, 2.79));
+    let scene = Scene::new(room(DVec3::new(6.0, 4.0, 2.8)), materials, vec![lamp])?;
+    let projection = Projection::HemisphericalFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
+    let view = View::new(projection, DVec3::new(1.5, 1.2, 1e-6), DVec3::Z, DVec3::Y)?;
+    let exposure = expose(&scene, 1);
+    let picture = render(&exposure.picture(&[1.0]), &view, [size, size], Detail::Exact, &|_| ()).0;
+    // On this projection a pixel is an equal share of cos dω.
+    let share = PI / (0.25 * PI * (size * size) as f64);
+    let brightest = 0.2 * picture.luminance_cd_m2.iter().copied().fold(0.0, f64::max);
+    let pixel = |k: usize| view.direction([size, size], [(k % size) as f64 + 0.5, (k / size) as f64 + 0.5]);
+    let light = |keep: &dyn Fn(f64) -> bool| -> Vec<(DVec3, f64)> {
+        let all = picture.luminance_cd_m2.iter().enumerate().filter(|(_, l)| keep(**l));
+        all.filter_map(|(k, l)| pixel(k).map(|w| (w, l * share))).collect()
+    };
+    let fields = [
+        Incident { name: "all light", light: light(&|_| true) },
+        Incident { name: "indirect light", light: light(&|l| l < brightest) },
+    ];
+    let indirect = |w: DVec3| -> f64 {
+        let [x, y] = [w.dot(view.right()), w.dot(view.up())];
+        let at = |t: f64| ((0.5 * (t + 1.0) * size as f64) as usize).min(size - 1);
+        let value = picture.luminance_cd_m2[at(-y) * size + at(x)];
+        if value < brightest { value } else { 0.0 }
+    };
+    let mut rng = Rng::new(1, 1, 1);
+    let tests: Vec<DVec3> = (0..TESTS)
+        .map(|_| {
+            let [u, v] = rng.uniforms();
+            // Not the last five degrees over the surface, where next to nothing is seen of it.
+            direction((1.0 - u * (1.0 - 0.087)).acos(), TAU * v)
+        })
+        .collect();
+    let mut lines = Vec::new();
+    for field in &fields {
+        for exponent in EXPONENTS {
+            let truth = Reflected::new(field, exponent);
+            let exact = truth.along_all(&tests);
+            let peak = exact.iter().copied().fold(0.0, f64::max);
+            let mut add = |way, effort, (numbers, found): (usize, Vec<f64>)| {
+                let errors: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| (a - b) / peak).collect();
+                let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+                let largest = errors.iter().map(|e| e.abs()).fold(0.0, f64::max);
+                lines.push(Line { light: field.name, exponent, way, numbers, effort, rms, largest });
+            };
+            for steps in [4, 6, 8, 12, 16, 24, 32, 48, 64, 96] {
+                add("θ–φ grid", 1, theta_phi(&truth, steps, &tests));
+            }
+            for order in [2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96] {
+                add("spherical harmonics", 1, spherical_harmonics(&truth, order, &tests));
+            }
+            for size in [6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192] {
+                add("octahedral map", 1, octahedral(&truth, size, &tests));
+            }
+            if field.name == "indirect light" {
+                for rays in [4, 16, 64, 256] {
+                    add("lobe rays", rays, lobe_rays(&truth, &indirect, rays, &tests));
+                }
+            }
+            println!("{}, exponent {exponent}", field.name);
+        }
+    }
+    write(&lines, &spacing())
+}
+
+/// Relative error of the luminance half-way between two nodes at `spacing` (in distances to a point of
+/// light) in the direction that sees its highlight there: (cosⁿ of half the angle between the nodes)
+/// averaged, against 1. The largest spacing that stays below [`GOOD`], for each exponent.
+fn spacing() -> Vec<(u32, f64, f64)> {
+    EXPONENTS
+        .into_iter()
+        .map(|exponent| {
+            let error = |s: f64| {
+                // Nodes at ±s/2; the eye mirrors the point of light at 0.
+                let angle = (0.5 * s).atan();
+                1.0 - angle.cos().powi(exponent as i32)
+            };
+            let (mut low, mut high) = (0.0, 4.0);
+            for _ in 0..60 {
+                let middle: f64 = 0.5 * (low + high);
+                if error(middle) < GOOD { low = middle } else { high = middle }
+            }
+            (exponent, low, low * f64::from(exponent).sqrt())
+        })
+        .collect()
+}
+
+fn write(lines: &[Line], spacing: &[(u32, f64, f64)]) -> Result<(), Box<dyn Error>> {
+    let folder = Path::new("reports/directions");
+    std::fs::create_dir_all(folder)?;
+    let mut csv =
+        String::from("light,exponent,way,numbers_stored,rays_per_look,rms_of_peak,largest_of_peak\n");
+    for line in lines {
+        let Line { light, exponent, way, numbers, effort, rms, largest } = line;
+        writeln!(csv, "{light},{exponent},{way},{numbers},{effort},{rms:.3e},{largest:.3e}")?;
+    }
+    std::fs::write(folder.join("directions.csv"), csv)?;
+    let ways = ["θ–φ grid", "spherical harmonics", "octahedral map"];
+    let mut table = String::new();
+    for light in ["all light", "indirect light"] {
+        for exponent in EXPONENTS {
+            write!(table, "| {light} | {exponent} |")?;
+            for way in ways {
+                let good =
+                    lines.iter().filter(|l| l.light == light && l.exponent == exponent && l.way == way);
+                let least = good.clone().filter(|l| l.largest <= GOOD).map(|l| l.numbers).min();
+                let best = good.map(|l| l.largest).fold(f64::INFINITY, f64::min);
+                match least {
+                    Some(numbers) => write!(table, " {numbers} |")?,
+                    None => write!(table, " more ({:.1} % left) |", 100.0 * best)?,
+                }
+            }
+            let rays =
+                lines.iter().filter(|l| l.light == light && l.exponent == exponent && l.way == "lobe rays");
+            let list: Vec<String> = rays.map(|l| format!("{:.2}", 100.0 * l.rms)).collect();
+            writeln!(table, " {} |", if list.is_empty() { "–".to_owned() } else { list.join(", ") })?;
+        }
+    }
+    let mut nodes = String::new();
+    for (exponent, s, law) in spacing {
+        writeln!(nodes, "| {exponent} | {s:.3} d | {law:.2} |")?;
+    }
+    for (file, light) in [("all.svg", "all light"), ("indirect.svg", "indirect light")] {
+        let series: Vec<Series> = [10u32, 100]
+            .into_iter()
+            .flat_map(|exponent| ways.into_iter().map(move |way| (exponent, way)))
+            .map(|(exponent, way)| Series {
+                name: format!("{way}, n = {exponent}"),
+                points: lines
+                    .iter()
+                    .filter(|l| l.light == light && l.exponent == exponent && l.way == way)
+                    .map(|l| [l.numbers as f64, 100.0 * l.largest, 0.0])
+                    .collect(),
+                line: true,
+            })
+            .collect();
+        let figure = Figure {
+            title: &format!("Largest error of reflected luminance: {light}"),
+            axes: ["numbers stored per node", "% of the largest luminance"],
+            log: [true, true],
+            series: &series,
+        };
+        std::fs::write(folder.join(file), figure.svg())?;
+    }
+    let words = include_str!("directions_words.md");
+    let text = words.replace("{table}", table.trim_end()).replace("{nodes}", nodes.trim_end());
+    std::fs::write(folder.join("README.md"), text)?;
+    println!("{table}\n{nodes}");
+    Ok(())
+}

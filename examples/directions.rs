@@ -5,6 +5,7 @@
 //!
 //!     cargo run --release --example directions
 #![allow(clippy::print_stdout, reason = "a study prints")]
+#![allow(clippy::cast_possible_wrap, reason = "exponents and places on small grids")]
 
 #[path = "../tests/common/mod.rs"]
 mod common;

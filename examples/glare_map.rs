@@ -8,16 +8,16 @@ mod common;
 
 use std::time::Instant;
 
-use gershun::observe::map::{MappedEye, field_effort, mend_for, swift_eyes, unbiased_eyes};
-use gershun::project::{LoadOptions, load};
+use gershun::observe::map::{MappedEye, USUAL, field_effort, mend_for, swift_eyes, unbiased_eyes};
+use gershun::project::{LoadOptions, Project, load};
 use gershun::query::Demand;
-use gershun::solve::{Effort, GlanceEffort, Method, prepare};
+use gershun::solve::{Effort, Method, prepare};
 
 const MAP: &str =
     "\n[[glare_map]]\nrect = { origin = [0, 0, 1.2], u = [8, 0, 0], v = [0, 5, 0] }\nstep = 0.2\n";
 
 fn main() {
-    let reference_blocks = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(1024);
+    let reference_blocks = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(128);
     let folder = tempfile::tempdir().expect("a folder");
     for entry in std::fs::read_dir("scenes/office").expect("the office").flatten() {
         std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
@@ -27,63 +27,33 @@ fn main() {
     std::fs::write(&path, text).expect("written");
     let project = load(folder.path(), &LoadOptions::default()).expect("loads");
     let world = &project.worlds[0];
-    let started = Instant::now();
-    let unbiased = cached(&project, reference_blocks);
-    let reference = unbiased;
-    println!("reference: {reference_blocks} blocks, {:.1} s", started.elapsed().as_secs_f64());
-    for line in std::io::stdin().lines().map_while(Result::ok) {
-        let n: Vec<f64> = line.split_whitespace().filter_map(|t| t.parse().ok()).collect();
-        let mut field = field_effort(&world.scene);
-        field.patch_m2 = field.patch_m2.map(|m2| m2 * 3000.0 / n[0]);
-        field.links = n[1] as u32;
-        field.looks = n[5] as u32;
-        field.shadow_rays = n[6];
-        let effort = GlanceEffort { replicates: n[2] as u32, rays: n[3] as u32, walks: n[4] as u32 };
-        let demand = Demand::default();
-        let (cpu, wall) = (common::cpu_seconds(), Instant::now());
-        let prepared = prepare(&world.scene, &demand, Method::Links, field, project.accuracy.seed);
-        let mended = mend_for(&world.glare_maps[0], &prepared, &effort);
-        let (solved, solved_wall) = (common::cpu_seconds() - cpu, wall.elapsed().as_secs_f64());
-        let (cpu, wall) = (common::cpu_seconds(), Instant::now());
-        let eyes = swift_eyes(&project, world, &world.glare_maps[0], &prepared, &mended, &effort);
-        println!(
-            "{n:?}: solve {solved:.2} CPU-s {solved_wall:.2} s; map {:.2} CPU-s {:.2} s",
-            common::cpu_seconds() - cpu,
-            wall.elapsed().as_secs_f64()
-        );
-        compare(&eyes, &reference);
-    }
+    let reference = reference(&project, reference_blocks);
+    let (demand, map) = (Demand::default(), &world.glare_maps[0]);
+    let (cpu, wall) = (common::cpu_seconds(), Instant::now());
+    let seed = project.accuracy.seed;
+    let prepared = prepare(&world.scene, &demand, Method::Links, field_effort(&world.scene), seed);
+    let mended = mend_for(map, &prepared, &USUAL);
+    println!(
+        "field and its mending: {:.2} CPU-s, {:.2} s",
+        common::cpu_seconds() - cpu,
+        wall.elapsed().as_secs_f64()
+    );
+    let (cpu, wall) = (common::cpu_seconds(), Instant::now());
+    let eyes = swift_eyes(&project, world, map, &prepared, &mended, &USUAL);
+    println!("map: {:.2} CPU-s, {:.2} s", common::cpu_seconds() - cpu, wall.elapsed().as_secs_f64());
+    compare(&eyes, &reference);
 }
 
 type Values = Vec<Vec<Option<[f64; 2]>>>;
 
-fn cached(project: &gershun::project::Project, blocks: usize) -> Values {
-    let path = format!("target/map_{blocks}_looks.json");
-    if let Ok(text) = std::fs::read_to_string(&path) {
-        return serde_json::from_str(&text).expect("json");
-    }
-    let values = fresh(project, blocks);
-    std::fs::write(&path, serde_json::to_string(&values).expect("json")).expect("written");
-    values
-}
-
-fn fresh(project: &gershun::project::Project, blocks: usize) -> Values {
+/// Unbiased values by blocks with many rays each.
+fn reference(project: &Project, blocks: usize) -> Values {
     let world = &project.worlds[0];
-    let effort = Effort {
-        gather: 256,
-        walks: 64,
-        links: 128,
-        looks: 32,
-        shadow_rays: 24.0,
-        ..field_effort(&world.scene)
+    let effort = Effort { gather: 256, walks: 64, links: 128, ..field_effort(&world.scene) };
+    let of_eye = |eye: &MappedEye| {
+        eye.views.iter().map(|(ugr, _)| ugr.as_ref().ok().map(|ugr| [ugr.value, ugr.se])).collect()
     };
-    values(&unbiased_eyes(project, world, blocks, effort)[0])
-}
-
-fn values(eyes: &[MappedEye]) -> Values {
-    eyes.iter()
-        .map(|eye| eye.views.iter().map(|(ugr, _)| ugr.as_ref().ok().map(|u| [u.value, u.se])).collect())
-        .collect()
+    unbiased_eyes(project, world, blocks, effort)[0].iter().map(of_eye).collect()
 }
 
 /// UGR below this is no glare.

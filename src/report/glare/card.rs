@@ -132,8 +132,7 @@ pub fn card_svg(view: &ViewpointOutcome, lang: Lang) -> Option<String> {
         ),
     );
     lines.y += 6.0;
-    let heads = [Term::SourceLuminance, Term::SolidAngle, Term::PositionIndex, Term::Share]
-        .map(|term| word(lang, term).to_owned());
+    let heads = ["L, cd/m²", "ω, sr", "P", "%"].map(str::to_owned);
     lines.row(word(lang, Term::GlareSource), &heads);
     for (number, source) in view.sources.iter().enumerate().take(NUMBERED) {
         lines.row(
@@ -142,7 +141,7 @@ pub fn card_svg(view: &ViewpointOutcome, lang: Lang) -> Option<String> {
                 figures(lang, source.luminance_cd_m2, 3),
                 figures(lang, source.solid_angle_sr, 3),
                 fixed(lang, source.position_index, 2),
-                percent(lang, source.share),
+                fixed(lang, 100.0 * source.share, 1),
             ],
         );
     }
@@ -190,7 +189,7 @@ impl Lines {
 
     /// A sentence in as many lines as it takes.
     fn add_folded(&mut self, text: &str) {
-        const MOST: usize = 84;
+        const MOST: usize = 66;
         let mut line = String::new();
         for word in text.split(' ') {
             if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > MOST {

@@ -1,4 +1,5 @@
 //! The luminance body of a point: against closed forms and against receivers.
+#![allow(clippy::print_stdout, reason = "measured figures are shown")]
 
 mod common;
 

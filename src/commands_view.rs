@@ -196,19 +196,16 @@ fn take_all(
         if here.is_empty() {
             continue;
         }
-        let source = match arguments.blocks {
-            Some(blocks) => {
-                let effort = Effort { gather: 1, ..Effort::default() };
-                Source::Blocks(prepare(&world.scene, &demand, Method::Links, effort, seed), blocks)
-            }
-            None => {
-                let exposure = match stored[index].take() {
-                    Some(stored) => from_store(&world.scene, stored),
-                    None => expose(&world.scene, seed),
-                };
-                let detail = if arguments.preview { Detail::Stored } else { Detail::Exact };
-                Source::Field(exposure, detail)
-            }
+        let source = if let Some(blocks) = arguments.blocks {
+            let effort = Effort { gather: 1, ..Effort::default() };
+            Source::Blocks(prepare(&world.scene, &demand, Method::Links, effort, seed), blocks)
+        } else {
+            let exposure = match stored[index].take() {
+                Some(stored) => from_store(&world.scene, stored),
+                None => expose(&world.scene, seed),
+            };
+            let detail = if arguments.preview { Detail::Stored } else { Detail::Exact };
+            Source::Field(exposure, detail)
         };
         for wanted in here {
             shots.push(take(project, world, wanted, &source, arguments.quiet));

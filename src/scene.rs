@@ -182,7 +182,7 @@ impl Scene {
                 luminaire.dim, luminaire.group, luminaire.body
             ));
         }
-        hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hasher.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
     }
 
     /// The scattering model of triangle `index`.

@@ -1,4 +1,5 @@
 //! A luminaire's own light passes its body once: covers and reflectors named in `body`, seen by rays.
+#![allow(clippy::print_stdout, reason = "measured figures are shown")]
 
 mod common;
 

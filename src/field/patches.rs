@@ -252,6 +252,7 @@ impl Patches {
     /// Places by which the evenness of a patch is judged: the centres of its quarters, or of up to
     /// `most` of the triangles that it joins, each with its share of the area.
     pub fn samples(&self, mesh: &Mesh, patch: usize, most: usize) -> Vec<(Place, f64)> {
+        const CENTRE: [f64; 2] = [1.0 / 3.0; 2];
         let (first, last, _) = self.ranges[patch];
         let members = &self.members[first as usize..last as usize];
         let place = |triangle: u32, [s, t]: [f64; 2]| {
@@ -259,7 +260,6 @@ impl Patches {
             let normal = mesh.normal_and_area(triangle as usize).0;
             Place { point: a + (b - a) * s + (c - a) * t, normal }
         };
-        const CENTRE: [f64; 2] = [1.0 / 3.0; 2];
         if let [Member { triangle, part, .. }] = members {
             return (0..4)
                 .map(|quarter| (place(*triangle, part.inner(quarter, 2).at(CENTRE)), 0.25))

@@ -194,7 +194,7 @@ fn channel_name(scene: &Scene, channel: &Channel) -> String {
 fn checksum<'b>(parts: impl Iterator<Item = &'b [u8]>) -> String {
     let mut hasher = Sha256::new();
     parts.for_each(|part| hasher.update(part));
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hasher.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
 /// A stored file that was opened and whose checksum fits.

@@ -40,7 +40,9 @@ fn the_light_vector_is_the_difference_of_two_planes() {
     let light = weights(world, &project.light_scenes[0], &world.rooms[0], false);
     let normals = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
     let mut receivers: Vec<_> = normals.iter().map(|&normal| planar(point, normal)).collect();
-    receivers.iter_mut().for_each(|receiver| receiver.lift = DVec3::ZERO);
+    for receiver in &mut receivers {
+        receiver.lift = DVec3::ZERO;
+    }
     let demand = Demand { receivers, ..Demand::default() };
     let effort = Effort { paths: 64, ..Effort::default() };
     let sheets = sheets(&world.scene, &demand, Method::Path, effort, 3, 128);

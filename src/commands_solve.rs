@@ -79,7 +79,7 @@ pub fn stored(path: &Path, project: &Project) -> Result<Vec<StoredField>, String
     let bytes = read_field(&path).map_err(|error| error.to_string())?;
     let scenes: Vec<(String, &Scene)> =
         project.worlds.iter().map(|world| (world_name(world), &world.scene)).collect();
-    let fields = FieldFile::open(&bytes).and_then(|file| file.fields(&scenes));
+    let fields = FieldFile::parse(&bytes).and_then(|file| file.fields(&scenes));
     fields.map_err(|error| format!("{}: {error}", path.display()))
 }
 

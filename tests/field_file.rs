@@ -28,7 +28,7 @@ fn stored(project: &Project) -> Vec<u8> {
 }
 
 fn open(bytes: &[u8], scene: &Scene) -> Result<(), StoreError> {
-    FieldFile::open(bytes)?.fields(&[("Room".to_owned(), scene)]).map(|_| ())
+    FieldFile::parse(bytes)?.fields(&[("Room".to_owned(), scene)]).map(|_| ())
 }
 
 /// Catches: a value lost on the way to the file or back, patches numbered otherwise; a field that is

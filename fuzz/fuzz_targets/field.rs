@@ -1,5 +1,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let _ = gershun::field::store::FieldFile::open(bytes);
+    let _ = gershun::field::store::FieldFile::parse(bytes);
 });

@@ -11,8 +11,6 @@ use crate::scene::Scene;
 
 /// Marks a node whose four children follow each other; the rest of the number is the first of them.
 const SPLIT: u32 = 1 << 31;
-/// Weights of the second and third corner at a triangle's centre.
-const CENTRE: [f64; 2] = [1.0 / 3.0; 2];
 /// Smallest patch that is split further, as a share of its triangle's edge.
 const SMALLEST_EDGE: f64 = 1e-4;
 
@@ -254,6 +252,7 @@ impl Patches {
     /// Places by which the evenness of a patch is judged: the centres of its quarters, or of up to
     /// `most` of the triangles that it joins, each with its share of the area.
     pub fn samples(&self, mesh: &Mesh, patch: usize, most: usize) -> Vec<(Place, f64)> {
+        const CENTRE: [f64; 2] = [1.0 / 3.0; 2];
         let (first, last, _) = self.ranges[patch];
         let members = &self.members[first as usize..last as usize];
         let place = |triangle: u32, [s, t]: [f64; 2]| {

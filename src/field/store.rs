@@ -211,11 +211,11 @@ impl std::fmt::Debug for WorldHead {
 }
 
 impl<'b> FieldFile<'b> {
-    /// Opens the bytes of a file.
+    /// Reads the bytes of a file.
     ///
     /// # Errors
     /// [`StoreError`] says what is wrong with them.
-    pub fn open(bytes: &'b [u8]) -> Result<Self, StoreError> {
+    pub fn parse(bytes: &'b [u8]) -> Result<Self, StoreError> {
         let not_ours = |what: String| StoreError::NotOurs(what);
         let (_, header) = SafeTensors::read_metadata(bytes)
             .map_err(|error| not_ours(format!("no safetensors file ({error})")))?;

@@ -16,7 +16,7 @@ use glam::DVec3;
 
 use super::highlights::{self, Bundle};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
-use super::{PARTS, Part, Prepared, Sheet, lifted};
+use super::{PARTS, Part, Prepared, Sheet, lifted, turn};
 use crate::query::{Ray, Receiver};
 use crate::rng::{Rng, Stratified};
 use crate::scene::BodiesMet;
@@ -120,7 +120,8 @@ fn answer_receiver(
     let aims = if guided > 0 { Stratified::new(rng) } else { sequence };
     for sample in 0..gather + guided {
         let direction = if sample < gather {
-            kernels[sample as usize % kernels.len()].sample(sequence.point(sample, rng))
+            let (kernel, place) = turn(sample, gather, kernels.len());
+            kernels[kernel].sample(sequence.point(place, rng))
         } else {
             highlights::draw(&bundles, aims.point(sample - gather, rng))
         };

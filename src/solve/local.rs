@@ -12,7 +12,7 @@
 use super::answer::direct;
 use super::chains::{self, Vertex};
 use super::double::{Desk, answer_ray, light_at};
-use super::{Counts, PARTS, Part, Prepared, Sheet, lifted};
+use super::{Counts, PARTS, Part, Prepared, Sheet, lifted, turn};
 use crate::query::Receiver;
 use crate::rng::{Rng, Stratified};
 use crate::scene::Scene;
@@ -184,7 +184,8 @@ fn make_up(prepared: &Prepared, receiver: &Receiver, rng: &mut Rng, desk: &mut D
     let rays = prepared.effort.local.returns.max(1).next_multiple_of(kernels.len() as u32);
     let sequence = Stratified::new(rng);
     for sample in 0..rays {
-        let direction = kernels[sample as usize % kernels.len()].sample(sequence.point(sample, rng));
+        let (kernel, place) = turn(sample, rays, kernels.len());
+        let direction = kernels[kernel].sample(sequence.point(place, rng));
         let density: f64 =
             kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64;
         if !(density > 0.0) {

@@ -272,6 +272,13 @@ fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
         .collect()
 }
 
+/// Kernel of ray `sample` of `rays`, and its place in the sequence. Kernels take turns, and each has a run
+/// of the sequence of its own: every second or eighth point would lie in one half or eighth of the square.
+fn turn(sample: u32, rays: u32, kernels: usize) -> (usize, u32) {
+    let kernel = sample as usize % kernels;
+    (kernel, kernel as u32 * (rays / kernels as u32) + sample / kernels as u32)
+}
+
 /// The point moved off a surface it lies on; one in free space stays where it is.
 fn lifted(scene: &Scene, point: DVec3, lift: DVec3) -> DVec3 {
     let offset_m = scene.tracer.offset_m();

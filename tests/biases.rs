@@ -31,7 +31,7 @@ fn what_a_run_leaves_out_stands_in_its_list() {
     let met = project(materials, "point = { flux = 1000 }", furniture);
     for words in [
         "two or more specular reflections",
-        "Specular images",
+        "Images of bright surfaces",
         "Opal surfaces",
         "Luminous surfaces",
         "phong_paper",

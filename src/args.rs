@@ -9,7 +9,7 @@ use gershun::geometry::trace::Simd;
 use gershun::project::{Goal, LoadOptions, Project};
 use gershun::solve::Method;
 
-pub use crate::args_lamp::LangChoice;
+use crate::args_run::{LangChoice, Run};
 
 /// Lighting quality from spatial-angular luminance: illuminance, flux and glare with intervals,
 /// judged against norms.
@@ -82,8 +82,8 @@ Examples:
         /// Code as printed in brackets, e.g. flux-mismatch
         code: String,
         /// Language of the explanation
-        #[arg(long, value_enum, default_value_t = crate::args_lamp::LangChoice::En)]
-        lang: crate::args_lamp::LangChoice,
+        #[arg(long, value_enum, default_value_t = LangChoice::En)]
+        lang: LangChoice,
     },
     /// The norms that gershun knows
     #[command(subcommand)]
@@ -126,12 +126,6 @@ pub struct Check {
     /// Folder for the report [default: out/<project name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Seed of all randomness [default: the project's, else 1]
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Number of threads; it never changes a result [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
     /// How far to go at most: 64, 1024 or 16384 blocks; relative goal 2.5, 0.5 or 0.15 %
     #[arg(long, value_enum, default_value_t = Accuracy::Normal)]
     pub accuracy: Accuracy,
@@ -167,15 +161,12 @@ pub struct Check {
     /// its own (3)
     #[arg(long, value_enum, value_name = "MEANS", default_value_t = Undecided::Apart)]
     pub undecided: Undecided,
-    /// Let the project read files outside its folder
-    #[arg(long)]
-    pub allow_outside: bool,
     /// SIMD level of the ray tracer; it never changes a result, which a test proves by switching it off
     #[arg(long, value_enum, default_value_t = SimdChoice::Detect, hide = true)]
     pub simd: SimdChoice,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// How the run goes
+    #[command(flatten)]
+    pub run: Run,
     /// Print biases and the plan's reasons too
     #[arg(short, long)]
     pub verbose: bool,
@@ -268,11 +259,11 @@ impl Check {
     /// How projects are loaded.
     pub fn load_options(&self) -> LoadOptions {
         LoadOptions {
-            allow_outside: self.allow_outside,
             simd: match self.simd {
                 SimdChoice::Detect => Simd::Detect,
                 SimdChoice::Off => Simd::Off,
             },
+            ..self.run.load_options()
         }
     }
 
@@ -283,7 +274,7 @@ impl Check {
             Accuracy::Normal => (0.005, 1024),
             Accuracy::Fine => (0.0015, 16_384),
         };
-        if let Some(seed) = self.seed {
+        if let Some(seed) = self.run.seed {
             project.accuracy.seed = seed;
         }
         if let Some(relative) = self.relative {

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use gershun::report::Lang;
+
+use crate::args_run::{LangChoice, Run};
 
 /// Arguments of `body`.
 #[derive(Args, Debug)]
@@ -28,21 +29,12 @@ pub struct Body {
     /// Folder whose `bodies` takes the files [default: out/<project name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Seed of all randomness [default: the project's, else 1]
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Number of threads; it never changes a result [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Language: en or ru [default: the project's]
-    #[arg(long, value_name = "LANG", value_parser = language)]
-    pub lang: Option<Lang>,
-    /// Let the project read files outside its folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// Language [default: the project's]
+    #[arg(long, value_enum)]
+    pub lang: Option<LangChoice>,
+    /// How the run goes
+    #[command(flatten)]
+    pub run: Run,
 }
 
 /// Help that follows the options.
@@ -68,8 +60,4 @@ fn step(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.parse().ok().filter(|step| (0.5..=45.0).contains(step));
     let even = parsed.filter(|step| ((90.0 / step).round() * step - 90.0).abs() < 1e-9);
     even.ok_or_else(|| "a divisor of 90 from 0.5 to 45, e.g. 1, 2, 2.5, 5, 10".to_owned())
-}
-
-fn language(text: &str) -> Result<Lang, String> {
-    Lang::parse(text).ok_or_else(|| "en or ru".to_owned())
 }

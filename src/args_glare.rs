@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::args_lamp::LangChoice;
+use crate::args_run::{LangChoice, Run};
 
 /// Arguments of `glare`.
 #[derive(Args, Debug)]
@@ -21,9 +21,6 @@ pub struct Glare {
     /// Of a project: glare maps by blocks of unbiased answers in place of look-ups, which takes far longer
     #[arg(long, requires = "project")]
     pub unbiased: bool,
-    /// Of a project: let it read files outside its folder
-    #[arg(long)]
-    pub allow_outside: bool,
     /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
     #[arg(long, value_name = "DIR", requires = "project")]
     pub out: Option<PathBuf>,
@@ -79,6 +76,9 @@ pub struct Glare {
     /// Picture with every source in a colour of its own, .png or .svg; for one image
     #[arg(long, value_name = "FILE")]
     pub check: Option<PathBuf>,
+    /// Of a project: how the run goes
+    #[command(flatten)]
+    pub run: Run,
 }
 
 /// Luminance of peaks.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Subcommand, ValueEnum};
 
-use gershun::report::Lang;
+use crate::args_run::{LangChoice, Run};
 
 /// Commands for photometric files.
 #[derive(Subcommand, Debug)]
@@ -133,37 +133,15 @@ pub struct FarFieldArgs {
     /// Independent blocks: four times as many halve the error
     #[arg(long, value_name = "N", default_value_t = 64)]
     pub blocks: u64,
-    /// Seed of the random numbers
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
     /// What is printed
     #[arg(long, value_enum, default_value_t = InfoFormat::Human)]
     pub format: InfoFormat,
     /// Language of what is printed for people
     #[arg(long, value_enum, default_value_t = LangChoice::En)]
     pub lang: LangChoice,
-    /// Let the project name files outside its folder
-    #[arg(long)]
-    pub allow_outside: bool,
-}
-
-/// Languages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LangChoice {
-    /// English
-    En,
-    /// Russian
-    Ru,
-}
-
-impl LangChoice {
-    /// The report's language.
-    pub fn lang(self) -> Lang {
-        match self {
-            Self::En => Lang::En,
-            Self::Ru => Lang::Ru,
-        }
-    }
+    /// How the run goes
+    #[command(flatten)]
+    pub run: Run,
 }
 
 /// Output of `lamp info`.

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::args_run::Run;
+
 /// Arguments of `solve`.
 #[derive(Args, Debug)]
 pub struct Solve {
@@ -12,18 +14,9 @@ pub struct Solve {
     /// Folder that takes field.safetensors [default: out/<project name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Seed of all randomness [default: the project's, else 1]
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Number of threads; it never changes a result [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Let the project read files outside its folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// How the run goes
+    #[command(flatten)]
+    pub run: Run,
 }
 
 /// Help that follows the options.

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use gershun::report::Lang;
+
+use crate::args_run::{LangChoice, Run};
 
 /// Arguments of `view`.
 #[derive(Args, Debug)]
@@ -34,21 +35,12 @@ pub struct View {
     /// Folder whose `views` takes the pictures [default: out/<project name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Seed of all randomness [default: the project's, else 1]
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Number of threads; it never changes a result [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Language of the drawings: en or ru [default: the project's]
-    #[arg(long, value_name = "LANG", value_parser = language)]
-    pub lang: Option<Lang>,
-    /// Let the project read files outside its folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    pub quiet: bool,
+    /// Language of the drawings [default: the project's]
+    #[arg(long, value_enum)]
+    pub lang: Option<LangChoice>,
+    /// How the run goes
+    #[command(flatten)]
+    pub run: Run,
 }
 
 /// Help that follows the options.
@@ -79,10 +71,6 @@ pub enum FormatChoice {
 
 /// Columns and rows.
 pub type Pixels = [usize; 2];
-
-fn language(text: &str) -> Result<Lang, String> {
-    Lang::parse(text).ok_or_else(|| format!("\"{text}\" is no language of the drawings; write en or ru"))
-}
 
 fn pixels(text: &str) -> Result<Pixels, String> {
     let sides: Option<Vec<usize>> = text.split(['x', '×']).map(|side| side.trim().parse().ok()).collect();

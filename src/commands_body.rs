@@ -1,48 +1,36 @@
 //! Runs `gershun body`: points → luminance bodies → files.
 
 use std::path::Path;
-use std::time::Duration;
 
 use gershun::observe::body::{AskedBody, LuminanceBody, luminance_body};
-use gershun::project::{LoadOptions, Project, load, suggestion};
+use gershun::project::{Project, suggestion};
 use gershun::report::Lang;
 use gershun::report::body::{body_csv, body_line, body_note, body_svg};
 use gershun::report::{make_folder, write_file};
 use glam::DVec3;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args_body::Body;
-use crate::{BAD_INPUT, COMPLIES, complain, complain_of_all, folder_name, remark, say, use_threads};
+use crate::commands_run::{LateBar, folder, folder_name, light_scene, open, spoken};
+use crate::{COMPLIES, complain, remark, say};
 
 /// Runs the command.
 pub fn run(arguments: &Body) -> u8 {
-    if let Err(code) = use_threads(arguments.threads) {
-        return code;
-    }
-    let options = LoadOptions { allow_outside: arguments.allow_outside, ..LoadOptions::default() };
-    let mut project = match load(&arguments.project, &options) {
+    let project = match open(&arguments.project, &arguments.run) {
         Ok(project) => project,
-        Err(diagnostics) => {
-            complain_of_all(&diagnostics, &arguments.project);
-            return BAD_INPUT;
-        }
+        Err(code) => return code,
     };
-    if let Some(seed) = arguments.seed {
-        project.accuracy.seed = seed;
-    }
     let wanted = match wanted(&project, arguments) {
         Ok(wanted) => wanted,
         Err(message) => return complain(&message),
     };
-    let of_project = project.info.language.first().and_then(|code| Lang::parse(code));
-    let lang = arguments.lang.or(of_project).unwrap_or(Lang::En);
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(folder_name(&project.info.name)));
-    let folder = out.join("bodies");
+    let lang = spoken(arguments.lang, &project.info.language);
+    let folder = folder(arguments.out.as_deref(), &project.info.name).join("bodies");
     let mut lines = String::new();
     for asked in &wanted {
-        let bar = bar(arguments);
-        let body = luminance_body(&project, asked, &|done| show(&bar, done));
-        bar.finish_and_clear();
+        let bar = LateBar::new(arguments.run.quiet, "blocks");
+        let body =
+            luminance_body(&project, asked, &|done| bar.show(done, asked.blocks as usize, &asked.name));
+        bar.clear();
         if let Err(error) = write(&folder, lang, &body) {
             return complain(&error);
         }
@@ -51,7 +39,7 @@ pub fn run(arguments: &Body) -> u8 {
             remark(&format!("{}: {note}", body.name));
         }
     }
-    if arguments.quiet {
+    if arguments.run.quiet {
         return COMPLIES;
     }
     let printed = say(&lines);
@@ -73,12 +61,7 @@ fn write(folder: &Path, lang: Lang, body: &LuminanceBody) -> Result<(), String> 
 
 /// The named point or viewpoints; all viewpoints where none is named.
 fn wanted(project: &Project, arguments: &Body) -> Result<Vec<AskedBody>, String> {
-    let by_name = |name: &String| {
-        let known = || project.light_scenes.iter().map(|scene| scene.name.as_str());
-        let found = project.light_scenes.iter().position(|scene| scene.name == *name);
-        found.ok_or_else(|| format!("no light scene \"{name}\"\n  hint: {}", suggestion(name, known())))
-    };
-    let asked = arguments.light_scene.as_ref().map(by_name).transpose()?;
+    let asked = arguments.light_scene.as_ref().map(|name| light_scene(project, name)).transpose()?;
     let (step_deg, blocks) = (arguments.step, arguments.blocks);
     if let Some(at) = arguments.at {
         let point = DVec3::from_array(at);
@@ -117,21 +100,4 @@ fn wanted(project: &Project, arguments: &Body) -> Result<Vec<AskedBody>, String>
     let chosen =
         |body: &AskedBody| arguments.viewpoint.is_empty() || arguments.viewpoint.contains(&body.name);
     Ok(all.into_iter().filter(chosen).collect())
-}
-
-/// A bar that appears once a body has taken a second.
-fn bar(arguments: &Body) -> ProgressBar {
-    let bar = ProgressBar::hidden();
-    let style = ProgressStyle::with_template("{bar:24} {pos}/{len} blocks · {elapsed}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.set_length(if arguments.quiet { 0 } else { u64::from(arguments.blocks) });
-    bar
-}
-
-fn show(bar: &ProgressBar, done: usize) {
-    let wanted = bar.length() > Some(0) && std::io::IsTerminal::is_terminal(&std::io::stderr());
-    if wanted && bar.is_hidden() && bar.elapsed() > Duration::from_secs(1) {
-        bar.set_draw_target(ProgressDrawTarget::stderr());
-    }
-    bar.set_position(done as u64);
 }

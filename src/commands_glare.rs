@@ -11,7 +11,7 @@ use gershun::glare::source::{DgpForm, Given};
 use gershun::image::{LuminanceImage, ViewOptions, read};
 use gershun::observe::map::{MapMethod, Mapped, maps};
 use gershun::observe::{CONVENTIONS, Observed, observe, room_tables};
-use gershun::project::{LoadOptions, load, read_image};
+use gershun::project::read_image;
 use gershun::report::Lang;
 use gershun::report::glare as report;
 use gershun::report::{make_folder, write_file};
@@ -19,6 +19,7 @@ use gershun::units::Nits;
 use rayon::prelude::*;
 
 use crate::args_glare::{DgpChoice, Glare, GlareFormat, Peak, PositionChoice};
+use crate::commands_run::open;
 use crate::{BAD_INPUT, COMPLIES, complain, say};
 
 /// Multiple of the task's luminance that is the threshold if none is given.
@@ -70,15 +71,9 @@ pub fn run(glare: &Glare) -> u8 {
 
 /// Glare of a project's observers.
 fn observers(glare: &Glare, path: &Path) -> u8 {
-    let options = LoadOptions { allow_outside: glare.allow_outside, ..LoadOptions::default() };
-    let project = match load(path, &options) {
+    let project = match open(path, &glare.run) {
         Ok(project) => project,
-        Err(diagnostics) => {
-            for diagnostic in &diagnostics {
-                complain(&diagnostic.to_string());
-            }
-            return BAD_INPUT;
-        }
+        Err(code) => return code,
     };
     let conventions = if glare.compare_methods { &CONVENTIONS[..] } else { &CONVENTIONS[..1] };
     let observed = observe(&project, conventions, glare.blocks as usize);

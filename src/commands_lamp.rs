@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use gershun::lamp::convert::Target;
 use gershun::lamp::{self, RULES, Severity, installed, rules};
 use gershun::photometry::Finding;
-use gershun::project::{LoadOptions, Project, is_same_file, load, read_photometry, suggestion};
+use gershun::project::{Project, is_same_file, read_photometry, suggestion};
 use gershun::report::words::{Lang, found};
 use gershun::report::{lamp as report, write_file};
 use gershun::solve::far_field::{self, FarDemand};
 use rayon::prelude::*;
 
 use crate::args_lamp::{FarFieldArgs, InfoFormat, Lamp, LintFormat, TableFormat};
+use crate::commands_run::open;
 use crate::{BAD_INPUT, COMPLIES, FAILS, complain, say};
 
 pub fn run(command: &Lamp) -> u8 {
@@ -26,7 +27,10 @@ pub fn run(command: &Lamp) -> u8 {
         Lamp::Convert { input, output, lang } => {
             convert(input, output, lang.lang()).unwrap_or_else(|error| complain(&error))
         }
-        Lamp::FarField(args) => far_field(args).unwrap_or_else(|error| complain(&error)),
+        Lamp::FarField(args) => match open(&args.project, &args.run) {
+            Ok(project) => far_field(args, &project).unwrap_or_else(|error| complain(&error)),
+            Err(code) => code,
+        },
     }
 }
 
@@ -186,7 +190,7 @@ pub fn faults(path: &Path, project: &Project) -> Vec<String> {
 /// Steps of angle that a table may have, degrees.
 const STEPS_DEG: std::ops::RangeInclusive<f64> = 0.5..=45.0;
 
-fn far_field(args: &FarFieldArgs) -> Result<u8, String> {
+fn far_field(args: &FarFieldArgs, project: &Project) -> Result<u8, String> {
     for (name, step, whole) in [("--c-step", args.c_step, 360.0), ("--gamma-step", args.gamma_step, 180.0)] {
         let steps = whole / step;
         if !STEPS_DEG.contains(&step) || (steps - steps.round()).abs() > 1e-9 {
@@ -203,11 +207,7 @@ fn far_field(args: &FarFieldArgs) -> Result<u8, String> {
         Some(out) => Some((out, target_of(out)?)),
         None => None,
     };
-    let options = LoadOptions { allow_outside: args.allow_outside, ..LoadOptions::default() };
-    let project = load(&args.project, &options).map_err(|diagnostics| {
-        diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n")
-    })?;
-    let chosen = installed::choose(&project, &args.group, args.light_scene.as_deref())
+    let chosen = installed::choose(project, &args.group, args.light_scene.as_deref())
         .map_err(|error| format!("{}: {error}", args.project.display()))?;
     let (azimuths_deg, gammas_deg) = far_field::axes(args.c_step, args.gamma_step);
     let demand = FarDemand {
@@ -218,7 +218,7 @@ fn far_field(args: &FarFieldArgs) -> Result<u8, String> {
         directions: 64,
         opening_points: 4,
         blocks: args.blocks,
-        seed: args.seed,
+        seed: project.accuracy.seed,
     };
     let field = far_field::far_field(&chosen.world.scene, &demand);
     let name = [project.info.name.as_str(), &args.group.join(" ")].join(" ");

@@ -1,22 +1,18 @@
 //! Runs `gershun view`: cameras → field → pictures → files.
 
-use std::path::Path;
-use std::time::Duration;
-
 use gershun::field::store::StoredField;
 use gershun::image::{LuminanceImage, Projection, View};
 use gershun::measure::weights;
-use gershun::project::{LoadOptions, Project, World, load, suggestion};
+use gershun::project::{Project, World, suggestion};
 use gershun::query::Demand;
-use gershun::report::Lang;
 use gershun::report::picture::{Album, Format, Shot, Way, write};
 use gershun::solve::picture::{Detail, Exposure, expose, from_store, omissions, render, replicate};
 use gershun::solve::{Effort, Method, Prepared, prepare};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::args_view::{FormatChoice, View as Arguments};
+use crate::commands_run::{LateBar, folder, light_scene, open, spoken};
 use crate::commands_solve::stored;
-use crate::{BAD_INPUT, COMPLIES, complain, complain_of_all, folder_name, remark, say, use_threads};
+use crate::{COMPLIES, complain, remark, say};
 
 /// Columns and rows of a fisheye at a viewpoint.
 const FISHEYE: [usize; 2] = [800, 800];
@@ -39,20 +35,10 @@ enum Source<'w> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> u8 {
-    if let Err(code) = use_threads(arguments.threads) {
-        return code;
-    }
-    let options = LoadOptions { allow_outside: arguments.allow_outside, ..LoadOptions::default() };
-    let mut project = match load(&arguments.project, &options) {
+    let project = match open(&arguments.project, &arguments.run) {
         Ok(project) => project,
-        Err(diagnostics) => {
-            complain_of_all(&diagnostics, &arguments.project);
-            return BAD_INPUT;
-        }
+        Err(code) => return code,
     };
-    if let Some(seed) = arguments.seed {
-        project.accuracy.seed = seed;
-    }
     let wanted = match wanted(&project, arguments) {
         Ok(wanted) => wanted,
         Err(message) => return complain(&message),
@@ -61,17 +47,17 @@ pub fn run(arguments: &Arguments) -> u8 {
         Ok(stored) => stored,
         Err(message) => return complain(&message),
     };
+    let of_field = stored.as_ref().and_then(|fields| fields.first()).map(|field| field.made.seed);
+    let seed = of_field.unwrap_or(project.accuracy.seed);
     let shots = take_all(&project, &wanted, stored, arguments);
-    let album =
-        Album { project: &project.info.name, seed: project.accuracy.seed, inputs: &project.inputs, shots };
-    let out = arguments.out.clone().unwrap_or_else(|| Path::new("out").join(folder_name(&project.info.name)));
+    let album = Album { project: &project.info.name, seed, inputs: &project.inputs, shots };
+    let out = folder(arguments.out.as_deref(), &project.info.name);
     let formats: Vec<Format> = arguments.format.iter().map(|format| chosen(*format)).collect();
-    let of_project = project.info.language.first().and_then(|code| Lang::parse(code));
-    let lang = arguments.lang.or(of_project).unwrap_or(Lang::En);
+    let lang = spoken(arguments.lang, &project.info.language);
     if let Err(error) = write(&album, &out, &formats, lang) {
         return complain(&error.to_string());
     }
-    if arguments.quiet {
+    if arguments.run.quiet {
         return COMPLIES;
     }
     let lines: Vec<String> = album.shots.iter().map(line).collect();
@@ -111,12 +97,7 @@ fn line(shot: &Shot) -> String {
 /// Those that were asked for by name, cameras or viewpoints; else all cameras, or all viewpoints where
 /// there is none.
 fn wanted(project: &Project, arguments: &Arguments) -> Result<Vec<Wanted>, String> {
-    let by_name = |name: &String| {
-        let known = || project.light_scenes.iter().map(|scene| scene.name.as_str());
-        let found = project.light_scenes.iter().position(|scene| scene.name == *name);
-        found.ok_or_else(|| format!("no light scene \"{name}\"\n  hint: {}", suggestion(name, known())))
-    };
-    let asked = arguments.light_scene.as_ref().map(by_name).transpose()?;
+    let asked = arguments.light_scene.as_ref().map(|name| light_scene(project, name)).transpose()?;
     let mut all = Vec::new();
     for (index, world) in project.worlds.iter().enumerate() {
         for camera in &world.cameras {
@@ -129,7 +110,7 @@ fn wanted(project: &Project, arguments: &Arguments) -> Result<Vec<Wanted>, Strin
     let no_camera = all.is_empty();
     if no_camera || !arguments.camera.is_empty() {
         all.extend(viewpoints(project, arguments, asked)?);
-        if no_camera && !all.is_empty() && !arguments.quiet {
+        if no_camera && !all.is_empty() && !arguments.run.quiet {
             remark("the project has no [[camera]]: its viewpoints are shown as fisheyes of 180°");
         }
     }
@@ -208,7 +189,7 @@ fn take_all(
             Source::Field(exposure, detail)
         };
         for wanted in here {
-            shots.push(take(project, world, wanted, &source, arguments.quiet));
+            shots.push(take(project, world, wanted, &source, arguments.run.quiet));
         }
     }
     shots
@@ -217,12 +198,13 @@ fn take_all(
 fn take(project: &Project, world: &World, wanted: &Wanted, source: &Source, quiet: bool) -> Shot {
     let light_scene = &project.light_scenes[wanted.light_scene];
     let weights = weights(world, light_scene, &world.rooms[wanted.room], false);
-    let bar = bar(quiet, &wanted.name);
     let (image, way, mut biases) = match source {
         Source::Field(exposure, detail) => {
-            bar.set_length(wanted.size[1] as u64);
+            let bar = LateBar::new(quiet, "rows");
+            let tell = |rows| bar.show(rows, wanted.size[1], &wanted.name);
             let picture = exposure.picture(&weights);
-            let (image, _) = render(&picture, &wanted.view, wanted.size, *detail, &|rows| show(&bar, rows));
+            let (image, _) = render(&picture, &wanted.view, wanted.size, *detail, &tell);
+            bar.clear();
             let way = match detail {
                 Detail::Stored => Way::Stored,
                 Detail::Exact => Way::Exact,
@@ -230,24 +212,18 @@ fn take(project: &Project, world: &World, wanted: &Wanted, source: &Source, quie
             (image, way, omissions(&world.scene, *detail))
         }
         Source::Blocks(prepared, blocks) => {
-            bar.set_length(u64::from(*blocks));
+            let bar = LateBar::new(quiet, "blocks");
             let image = mean(prepared, wanted, &weights, *blocks, &bar);
+            bar.clear();
             (image, Way::Blocks(*blocks), Vec::new())
         }
     };
-    bar.finish_and_clear();
     biases.extend(project.biases.iter().cloned());
     Shot { name: wanted.name.clone(), light_scene: light_scene.name.clone(), image, way, biases }
 }
 
 /// Mean of the blocks and its standard error, pixel by pixel (Welford's recurrence).
-fn mean(
-    prepared: &Prepared,
-    wanted: &Wanted,
-    weights: &[f64],
-    blocks: u32,
-    bar: &ProgressBar,
-) -> LuminanceImage {
+fn mean(prepared: &Prepared, wanted: &Wanted, weights: &[f64], blocks: u32, bar: &LateBar) -> LuminanceImage {
     let [width, height] = wanted.size;
     let (mut mean, mut squares) = (vec![0.0; width * height], vec![0.0; width * height]);
     for block in 0..blocks {
@@ -257,28 +233,11 @@ fn mean(
             *mean += off / f64::from(block + 1);
             *square += off * (value - *mean);
         }
-        show(bar, block as usize + 1);
+        bar.show(block as usize + 1, blocks as usize, &wanted.name);
     }
     let count = f64::from(blocks) * f64::from(blocks - 1);
     let mut image = LuminanceImage::new(width, height, Some(wanted.view), mean);
     image.standard_error_cd_m2 =
         Some(squares.into_iter().map(|square: f64| (square / count).sqrt()).collect());
     image
-}
-
-/// A bar that appears once a picture has taken a second.
-fn bar(quiet: bool, name: &str) -> ProgressBar {
-    let bar = ProgressBar::hidden();
-    let style = ProgressStyle::with_template("{bar:24} {pos}/{len} · {msg} · {elapsed}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.set_message(if quiet { String::new() } else { name.to_owned() });
-    bar
-}
-
-fn show(bar: &ProgressBar, done: usize) {
-    let wanted = !bar.message().is_empty() && std::io::IsTerminal::is_terminal(&std::io::stderr());
-    if wanted && bar.is_hidden() && bar.elapsed() > Duration::from_secs(1) {
-        bar.set_draw_target(ProgressDrawTarget::stderr());
-    }
-    bar.set_position(done as u64);
 }

@@ -261,9 +261,8 @@ impl Plan {
 
 fn explain(project: &Project, world: &World, plan: &mut Plan) {
     let points = plan.demand.receivers.len();
-    let surfaces = world.scene.mesh.surfaces.iter().map(|s| &world.scene.materials[s.material].bsdf);
-    let specular = surfaces.clone().filter(|bsdf| bsdf.specular(1.0).is_some()).count();
-    let glossy = surfaces.filter(|bsdf| bsdf.lobe().is_some()).count();
+    let specular = world.scene.surfaces().filter(|bsdf| bsdf.specular(1.0).is_some()).count();
+    let glossy = world.scene.surfaces().filter(|bsdf| bsdf.lobe().is_some()).count();
     let mut say = |text: String| plan.reasons.push(text);
     say(format!(
         "{points} receivers and {} lines of sight ask for a stored field: light is solved once, then looked up.",

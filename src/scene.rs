@@ -185,6 +185,23 @@ impl Scene {
         hash.hex()
     }
 
+    /// Area of the surfaces that scatter (all but mirrors and clear panes), m².
+    pub fn scattering_m2(&self) -> f64 {
+        let triangles = 0..self.mesh.triangles.len();
+        let scatters = |&t: &usize| self.bsdf(t as u32).specular(1.0).is_none();
+        triangles.filter(scatters).map(|t| self.mesh.normal_and_area(t).1).sum()
+    }
+
+    /// The scattering model of each surface.
+    pub fn surfaces(&self) -> impl Iterator<Item = &Bsdf> {
+        self.mesh.surfaces.iter().map(|surface| &self.materials[surface.material].bsdf)
+    }
+
+    /// Whether a surface reflects in a glossy lobe.
+    pub fn has_lobes(&self) -> bool {
+        self.surfaces().any(|bsdf| bsdf.lobe().is_some())
+    }
+
     /// The scattering model of triangle `index`.
     pub fn bsdf(&self, triangle: u32) -> &Bsdf {
         let surface = self.mesh.triangles[triangle as usize].surface;

@@ -460,3 +460,24 @@ fn norms_are_shown_in_the_words_of_their_files() {
     let list = String::from_utf8(gershun(&["norm", "list"]).stdout).unwrap();
     assert!(list.contains("en-12464-1-2021") && list.contains("EN 12464-1:2021"), "{list}");
 }
+
+/// Catches: a command that tells a project's mistakes in words of its own, or leaves something behind.
+#[test]
+fn every_command_refuses_a_wrong_project_in_the_same_words() {
+    let folder = folder(&GOOD.replace("34.2", "34.22"), &[]);
+    let out = folder.path().join("out");
+    let told = |command: &[&str]| {
+        let arguments = [command, &["--out", text(&out), text(folder.path())]].concat();
+        let output = gershun(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{command:?}");
+        assert!(output.stdout.is_empty() && !out.exists(), "{command:?} wrote something");
+        errors(&output)
+    };
+    let checked = told(&["check"]);
+    assert!(checked.contains("project.toml:30") && !checked.contains("error: error"), "{checked}");
+    for command in [&["view"][..], &["solve"], &["body"], &["glare"]] {
+        assert_eq!(told(command), checked, "{command:?}");
+    }
+    let far_field = gershun(&["lamp", "far-field", text(folder.path())]);
+    assert_eq!((far_field.status.code(), errors(&far_field)), (Some(2), checked));
+}

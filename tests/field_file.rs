@@ -55,6 +55,12 @@ fn pictures_from_a_kept_field_are_those_of_a_fresh_one() {
     // Broken twin: the field of another seed.
     assert!(run(&["solve", "-q", &office, "--seed", "2", "--out", &path("other")]).status.success());
     assert!(fresh != taken("else", &["--field", &path("other")]), "the file is not looked at");
+    // The record names the seed of the field that was looked at, not the project's.
+    for (out, seed) in [("again", 1), ("else", 2)] {
+        let record = fs::read(folder.path().join(out).join("views/views.json")).expect("a record");
+        let record: serde_json::Value = serde_json::from_slice(&record).expect("JSON");
+        assert_eq!(record["seed"], seed);
+    }
 }
 
 /// Catches: a field used for a scene it does not belong to; one refused for what does not matter to it.

@@ -4,84 +4,11 @@
 
 use std::process::Command;
 
+use common::violations;
 use serde_json::Value as Json;
 
-/// What violates a schema, in the words that ours uses.
-fn violations(schema: &Json, root: &Json, value: &Json, at: &str, found: &mut Vec<String>) {
-    const KNOWN: [&str; 16] = [
-        "$schema",
-        "$defs",
-        "title",
-        "description",
-        "type",
-        "enum",
-        "required",
-        "properties",
-        "items",
-        "additionalProperties",
-        "minimum",
-        "maximum",
-        "minItems",
-        "maxItems",
-        "minLength",
-        "$ref",
-    ];
-    for word in schema.as_object().unwrap().keys() {
-        assert!(KNOWN.contains(&word.as_str()), "{at}: the check does not know {word}");
-    }
-    if let Some(target) = schema["$ref"].as_str() {
-        return violations(&root["$defs"][target.strip_prefix("#/$defs/").unwrap()], root, value, at, found);
-    }
-    let fits = match schema["type"].as_str().unwrap() {
-        "number" => value.is_number(),
-        "string" => value.is_string(),
-        "array" => value.is_array(),
-        "object" => value.is_object(),
-        other => panic!("{at}: {other}"),
-    };
-    if !fits {
-        found.push(format!("{at}: {value} is no {}", schema["type"]));
-        return;
-    }
-    if schema["enum"].as_array().is_some_and(|allowed| !allowed.contains(value)) {
-        found.push(format!("{at}: {value} is not allowed"));
-    }
-    let outside = |key: &str, wrong: fn(f64, f64) -> bool| {
-        let (limit, number) = (schema[key].as_f64(), value.as_f64());
-        limit.zip(number).is_some_and(|(limit, number)| wrong(number, limit))
-    };
-    if outside("minimum", |x, least| x < least) || outside("maximum", |x, most| x > most) {
-        found.push(format!("{at}: {value} is out of range"));
-    }
-    let short = |key: &str, length: Option<usize>| {
-        schema[key].as_u64().zip(length).map(|(limit, length)| (length as u64, limit))
-    };
-    let length = value.as_array().map(Vec::len);
-    if short("minItems", length).is_some_and(|(length, least)| length < least)
-        || short("maxItems", length).is_some_and(|(length, most)| length > most)
-        || short("minLength", value.as_str().map(str::len)).is_some_and(|(length, least)| length < least)
-    {
-        found.push(format!("{at}: {value} has the wrong length"));
-    }
-    if let (Some(items), Some(elements)) = (schema.get("items"), value.as_array()) {
-        for (index, element) in elements.iter().enumerate() {
-            violations(items, root, element, &format!("{at}[{index}]"), found);
-        }
-    }
-    if let Some(object) = value.as_object() {
-        for key in schema["required"].as_array().into_iter().flatten().filter_map(Json::as_str) {
-            if !object.contains_key(key) {
-                found.push(format!("{at}: {key} is missing"));
-            }
-        }
-        for (key, element) in object {
-            match schema["properties"].get(key) {
-                Some(property) => violations(property, root, element, &format!("{at}.{key}"), found),
-                None => found.push(format!("{at}: {key} is not in the schema")),
-            }
-        }
-    }
-}
+#[path = "common/schema.rs"]
+mod common;
 
 fn schema() -> Json {
     let output = Command::new(env!("CARGO_BIN_EXE_gershun")).args(["schema", "norm"]).output().unwrap();
@@ -91,9 +18,7 @@ fn schema() -> Json {
 
 fn check(text: &str) -> Vec<String> {
     let value: toml::Value = toml::from_str(text).unwrap();
-    let (schema, mut found) = (schema(), Vec::new());
-    violations(&schema, &schema, &serde_json::to_value(value).unwrap(), "norm", &mut found);
-    found
+    violations(&schema(), &serde_json::to_value(value).unwrap(), "norm")
 }
 
 /// Catches: a key of a bundled file that the schema forgot, a range other than the loader's.

@@ -259,11 +259,9 @@ impl<'b> FieldFile<'b> {
             .ok_or_else(|| StoreError::Malformed(format!("patch area \"{}\" is no area", head.patch_m2)))?;
         // Divided that finely, the scene would have more patches than the file.
         let triangles = scene.mesh.triangles.len();
-        let diffuse = |t: &usize| scene.bsdf(*t as u32).specular(1.0).is_none();
-        let lit_m2: f64 = (0..triangles).filter(diffuse).map(|t| scene.mesh.normal_and_area(t).1).sum();
         let held =
             self.tensors.tensor(&format!("world{world}.area_m2")).map_or(0, |view| view.data().len() / 8);
-        if lit_m2 / patch_m2 > (held + triangles) as f64 {
+        if scene.scattering_m2() / patch_m2 > (held + triangles) as f64 {
             return Err(StoreError::Malformed(format!("{held} patches are too few for {patch_m2} m² each")));
         }
         let mut patches = Patches::of_scene(scene, patch_m2);

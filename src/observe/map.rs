@@ -126,12 +126,7 @@ pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {
                 azimuths_deg: azimuths_deg(map),
                 convention: Convention::default().words(),
                 method,
-                glossy: world
-                    .scene
-                    .mesh
-                    .surfaces
-                    .iter()
-                    .any(|surface| world.scene.materials[surface.material].bsdf.lobe().is_some()),
+                glossy: world.scene.has_lobes(),
                 eyes,
             });
         }
@@ -141,10 +136,7 @@ pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {
 
 /// What the field costs in which maps look things up.
 pub fn field_effort(scene: &Scene) -> Effort {
-    let diffuse = |t: usize| scene.bsdf(t as u32).specular(1.0).is_none();
-    let triangles = 0..scene.mesh.triangles.len();
-    let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
-    Effort { patch_m2: Some(lit_m2 / PATCHES), links: LINKS, ..Effort::default() }
+    Effort { patch_m2: Some(scene.scattering_m2() / PATCHES), links: LINKS, ..Effort::default() }
 }
 
 /// The field of `prepared` (of no demand) mended for what a map's eyes see: the rest of the solution.

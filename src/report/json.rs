@@ -328,69 +328,19 @@ fn ugr_table(table: &UgrTableOutcome) -> UgrTableRow<'_> {
 }
 
 #[cfg(test)]
+#[path = "../../tests/common/schema.rs"]
+mod against_schema;
+
+#[cfg(test)]
 mod tests {
     use serde_json::Value as Json;
 
+    use super::against_schema::violations;
     use super::*;
     use crate::report::{sample, schema};
 
-    /// The part of JSON Schema that our schema uses.
-    fn violations(schema: &Json, root: &Json, value: &Json, at: &str, found: &mut Vec<String>) {
-        if let Some(target) = schema["$ref"].as_str() {
-            let name = target.strip_prefix("#/$defs/").expect("local reference");
-            return violations(&root["$defs"][name], root, value, at, found);
-        }
-        let types: Vec<&str> = match &schema["type"] {
-            Json::String(one) => vec![one],
-            Json::Array(some) => some.iter().filter_map(Json::as_str).collect(),
-            _ => panic!("{at}: a schema without type"),
-        };
-        let is = |kind: &&str| match *kind {
-            "null" => value.is_null(),
-            "boolean" => value.is_boolean(),
-            "integer" => value.is_u64(),
-            "number" => value.is_number(),
-            "string" => value.is_string(),
-            "array" => value.is_array(),
-            "object" => value.is_object(),
-            other => panic!("{other}"),
-        };
-        if !types.iter().any(is) {
-            found.push(format!("{at}: {value} is no {types:?}"));
-            return;
-        }
-        if let Some(allowed) = schema["enum"].as_array()
-            && !allowed.contains(value)
-        {
-            found.push(format!("{at}: {value} is not allowed"));
-        }
-        if let (Some(items), Some(elements)) = (schema.get("items"), value.as_array()) {
-            for (index, element) in elements.iter().enumerate() {
-                violations(items, root, element, &format!("{at}[{index}]"), found);
-            }
-        }
-        if let Some(object) = value.as_object() {
-            for key in schema["required"].as_array().into_iter().flatten().filter_map(Json::as_str) {
-                if !object.contains_key(key) {
-                    found.push(format!("{at}: {key} is missing"));
-                }
-            }
-            for (key, element) in object {
-                match schema["properties"].get(key) {
-                    Some(property) => {
-                        violations(property, root, element, &format!("{at}.{key}"), found);
-                    }
-                    None => found.push(format!("{at}: {key} is not in the schema")),
-                }
-            }
-        }
-    }
-
     fn check(file: &Json) -> Vec<String> {
-        let schema: Json = serde_json::from_str(schema()).expect("schema is JSON");
-        let mut found = Vec::new();
-        violations(&schema, &schema, file, "result", &mut found);
-        found
+        violations(&serde_json::from_str(schema()).expect("schema is JSON"), file, "result")
     }
 
     #[test]

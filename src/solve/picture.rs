@@ -74,10 +74,7 @@ pub struct Picture<'e> {
 /// Builds the field for pictures of a scene.
 pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
     let emitters = Emitters::new(scene);
-    let diffuse = |t: usize| scene.bsdf(t as u32).specular(1.0).is_none();
-    let triangles = 0..scene.mesh.triangles.len();
-    let lit_m2: f64 = triangles.filter(|&t| diffuse(t)).map(|t| scene.mesh.normal_and_area(t).1).sum();
-    let patch_m2 = (lit_m2 / PATCHES).max(1e-12);
+    let patch_m2 = (scene.scattering_m2() / PATCHES).max(1e-12);
     // Smoothing takes patches of about one size.
     let effort = Effort { patch_m2: Some(patch_m2), adaptive: false, links: LINKS, ..Effort::default() };
     let highlights = Highlights::new(&emitters);
@@ -129,7 +126,7 @@ impl Exposure<'_> {
         };
         let part = |side: usize| self.stored.reached[side].middle();
         let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind, part);
-        let whole = has_lobes(scene).then(|| {
+        let whole = scene.has_lobes().then(|| {
             let values: Vec<f64> = (0..stored.len()).map(|side| per_albedo(side, stored[side])).collect();
             smooth.with(&values)
         });
@@ -159,20 +156,16 @@ pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
         all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and eight in them; unshadowed light may be off by 0.4 %.");
     }
     all.push("Every pixel is looked at in its centre only, but for the openings of luminaires: edges of surfaces are not smoothed, and what is narrower than a pixel may be missed.");
-    if (0..scene.mesh.triangles.len() as u32).any(|t| scene.bsdf(t).specular(1.0).is_some()) {
+    if scene.surfaces().any(|bsdf| bsdf.specular(1.0).is_some()) {
         all.push("Reflections that carry less than 1e-4 of a pixel's light, and those beyond 24 mirrors or panes, are cut.");
     }
-    if has_lobes(scene) {
+    if scene.has_lobes() {
         all.push(match detail {
             Detail::Stored => "What glossy surfaces reflect in their lobe is left out: their highlights are missing. Without --preview they are there.",
             Detail::Exact => "What glossy surfaces reflect in their lobe is sampled by four rays a pixel, which find surfaces as the field has them, shadows blurred; pictures of the example hall with its polished floor are 1 % too dark. The noise of these rays alone is given for every pixel; it is no interval.",
         });
     }
     all.into_iter().map(str::to_owned).collect()
-}
-
-fn has_lobes(scene: &Scene) -> bool {
-    scene.mesh.surfaces.iter().any(|surface| scene.materials[surface.material].bsdf.lobe().is_some())
 }
 
 /// A diffuse place seen by a pixel, and how much of its luminance arrives.

@@ -76,12 +76,7 @@ pub(super) fn field(
 /// [`field`] with its parts.
 pub(super) fn parts(emitters: &Emitters, highlights: &Highlights, effort: &Effort, seed: u64) -> Parts {
     let scene = emitters.scene;
-    let diffuse = |triangle: usize| scene.bsdf(triangle as u32).specular(1.0).is_none();
-    let area_m2: f64 = (0..scene.mesh.triangles.len())
-        .filter(|&t| diffuse(t))
-        .map(|t| scene.mesh.normal_and_area(t).1)
-        .sum();
-    let patch_m2 = effort.patch_m2.unwrap_or(area_m2 / PATCHES).max(1e-12);
+    let patch_m2 = effort.patch_m2.unwrap_or_else(|| scene.scattering_m2() / PATCHES).max(1e-12);
     let mut patches = Patches::of_scene(scene, patch_m2);
     if effort.adaptive {
         refine(emitters, &mut patches);

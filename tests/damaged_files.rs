@@ -116,7 +116,10 @@ struct Tally {
 fn damage_never_moves_values_in_silence() {
     let kinds = ["dropped", "doubled", "digit", "cut"];
     let mut tallies: [Tally; 4] = Default::default();
-    for (name, whole) in files() {
+    let files = files();
+    // So many must be refused, or the damage does no harm: of the two small files alone, and of many.
+    let least = if files.len() > 2 { 50 } else { 10 };
+    for (name, whole) in files {
         let Some((sound, known)) = told(&whole) else { continue };
         let all = tokens(&name, &whole);
         let step = (all.len() / 150).max(1);
@@ -180,6 +183,6 @@ fn damage_never_moves_values_in_silence() {
     }
     for (kind, tally) in kinds.iter().zip(&tallies) {
         assert!(tally.shifted.is_empty(), "{kind}: {} moved in silence", tally.shifted.len());
-        assert!(tally.refused > 50, "{kind}: {}", tally.refused);
+        assert!(tally.refused > least, "{kind}: {}", tally.refused);
     }
 }

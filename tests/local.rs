@@ -6,7 +6,7 @@ mod common;
 mod differences;
 mod sphere;
 
-use common::{furnished, lambert, planar, point_lamp, room, row, sheets};
+use common::{furnished, lambert, planar, point_lamp, room, row, sheets, spots};
 use differences::{agree, brighter, demand};
 use gershun::estimate::Estimate;
 use gershun::material::{Bsdf, Material};
@@ -33,6 +33,20 @@ fn local_agrees_with_links_in_a_room_with_mirror_pane_and_opal() {
     let demand = demand(DVec3::new(6.0, 4.0, 2.8), DVec3::new(3.2, 0.6, 1.2), &targets);
     let scene = furnished();
     agree("furnished, local", &scene, &brighter(&scene), &demand, Method::Local, MANY);
+}
+
+/// Catches: a wrong share between the rays that follow a response or a cosine and those aimed at bright
+/// patches, behind a pane too; walks that branch there and count twice.
+#[test]
+fn local_agrees_with_links_where_spots_light_the_room() {
+    let targets = [
+        DVec3::new(0.0, 3.0, 1.2), // the wall opposite the spot
+        DVec3::new(5.9, 1.0, 1.0), // through the pane, near the spot
+        DVec3::new(2.7, 2.2, 1.0), // the opal
+    ];
+    let demand = demand(DVec3::new(6.0, 4.0, 2.8), DVec3::new(3.2, 0.6, 1.2), &targets);
+    let scene = spots();
+    agree("spots, local", &scene, &brighter(&scene), &demand, Method::Local, MANY);
 }
 
 #[test]

@@ -77,7 +77,9 @@ fn deviation(
     for (index, r) in places.enumerate() {
         let estimate = Estimate::from_blocks(&row(&sheets, index, 1));
         let exact = truth.exact(place(r).length());
-        z = z.max((estimate.value - exact).abs() / estimate.se);
+        // Receivers are lifted by 1e-9 of the scene's size, by which E = 1/a² falls under the source.
+        let lifted = 2.0 * 1e-9 * 60.0 / truth.source * exact;
+        z = z.max((estimate.value - exact).abs() / estimate.se.hypot(lifted));
         se = se.max(estimate.se / exact);
     }
     println!("{method:?}: z {z:.2}, se {:.3} %, {:.1} CPU-s", 100.0 * se, common::cpu_seconds() - before);
@@ -90,9 +92,10 @@ fn every_method_solves_sobolev_s_problem() {
     let plates = Plates { source: 0.5, rho: [0.5, 0.5] };
     let twin = Plates { rho: [0.53, 0.53], ..plates };
     let local = LocalEffort { chains: 64, connections: 64.0, returns: 16, ..LocalEffort::default() };
-    // Far from the source most rays drawn from a receiver miss what is bright: chains do not.
+    // Far from the source most rays drawn from a receiver miss what is bright: links aims there too, chains
+    // start there.
     for (method, effort, blocks, far, resolve) in [
-        (Method::Links, Effort { gather: 64, walks: 16, ..Effort::default() }, 2048, 1.5, 0.03),
+        (Method::Links, Effort { gather: 64, walks: 16, ..Effort::default() }, 1024, 5.0, 0.03),
         (Method::Local, Effort { local, ..Effort::default() }, 4096, 5.0, 0.04),
         (Method::Path, Effort { paths: 64, ..Effort::default() }, 2048, 3.0, 0.04),
     ] {
@@ -103,4 +106,18 @@ fn every_method_solves_sobolev_s_problem() {
         let [z, _] = deviation(twin, plates, method, effort, blocks, far);
         assert!(z > 5.0, "{method:?}: the twin passes with {z} standard errors");
     }
+}
+
+/// Catches: a spot of a centimetre, which makes half of the light, found by chance. By rays that follow
+/// responses and cosines alone the standard error is 20 % after 2 048 blocks.
+#[test]
+fn links_find_a_spot_of_a_centimetre() {
+    let plates = Plates { source: 0.01, rho: [0.5, 0.5] };
+    let effort = Effort { gather: 64, walks: 16, ..Effort::default() };
+    let [z, se] = deviation(plates, plates, Method::Links, effort, 512, 5.0);
+    assert!(5.0 * se <= 0.06, "the spot is not resolved: {se}");
+    assert!(z < 5.0, "{z} standard errors");
+    let twin = Plates { rho: [0.54, 0.54], ..plates };
+    let [z, _] = deviation(twin, plates, Method::Links, effort, 512, 5.0);
+    assert!(z > 5.0, "the twin passes with {z} standard errors");
 }

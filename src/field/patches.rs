@@ -249,6 +249,18 @@ impl Patches {
         (centre / before, facing / before)
     }
 
+    /// Corners of the triangles, or of the part of one, that a patch consists of, m.
+    pub fn outlines<'p>(&'p self, mesh: &'p Mesh, patch: usize) -> impl Iterator<Item = [DVec3; 3]> + 'p {
+        let (first, last, _) = self.ranges[patch];
+        self.members[first as usize..last as usize].iter().map(|member| {
+            let [a, b, c] = mesh.corners(member.triangle as usize);
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|corner| {
+                let [s, t] = member.part.at(corner);
+                a + (b - a) * s + (c - a) * t
+            })
+        })
+    }
+
     /// Places by which the evenness of a patch is judged: the centres of its quarters, or of up to
     /// `most` of the triangles that it joins, each with its share of the area.
     pub fn samples(&self, mesh: &Mesh, patch: usize, most: usize) -> Vec<(Place, f64)> {

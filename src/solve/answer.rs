@@ -14,9 +14,11 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
+use super::beacons::{Aims, Beacons, Branch};
 use super::highlights::{self, Bundle};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
 use super::{PARTS, Part, Prepared, Sheet, lifted, turn};
+use crate::field::LuminanceField;
 use crate::query::{Ray, Receiver};
 use crate::rng::{Rng, Stratified};
 use crate::scene::BodiesMet;
@@ -44,6 +46,10 @@ pub(super) struct Desk {
     onward: Vec<Landing>,
     /// Highlights about the receiver or the current place.
     bundles: Vec<Bundle>,
+    /// Chances of bright patches at the receiver …
+    aims: Aims,
+    /// … and at the current place of a walk.
+    aims_here: Aims,
 }
 
 impl Desk {
@@ -55,6 +61,8 @@ impl Desk {
             pending: Vec::new(),
             onward: Vec::new(),
             bundles: Vec::new(),
+            aims: Aims::default(),
+            aims_here: Aims::default(),
         }
     }
 }
@@ -113,43 +121,63 @@ fn answer_receiver(
         kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64
     };
     let sequence = Stratified::new(rng);
+    let (emitters, patches) = (&prepared.emitters, field(prepared).patches());
     let mut bundles = std::mem::take(&mut desk.bundles);
+    let mut aims = std::mem::take(&mut desk.aims);
     let response = |direction| kernels.iter().map(|kernel| kernel.response(direction)).sum();
-    prepared.highlights.about(&prepared.emitters, origin, response, &mut bundles);
+    prepared.highlights.about(emitters, origin, response, &mut bundles);
+    prepared.beacons.about(origin, response, kernels.len(), &mut aims);
     let guided = if bundles.is_empty() { 0 } else { effort.highlights };
-    let aims = if guided > 0 { Stratified::new(rng) } else { sequence };
-    for sample in 0..gather + guided {
+    let aimed = if aims.is_empty() { 0 } else { effort.beacons };
+    let aimed_walks = aimed.min(walks);
+    let guides = if guided > 0 { Stratified::new(rng) } else { sequence };
+    let marks = if aimed > 0 { Stratified::new(rng) } else { sequence };
+    for sample in 0..gather + guided + aimed {
+        let mut target = None;
         let direction = if sample < gather {
             let (kernel, place) = turn(sample, gather, kernels.len());
             kernels[kernel].sample(sequence.point(place, rng))
+        } else if sample < gather + guided {
+            highlights::draw(&bundles, guides.point(sample - gather, rng))
         } else {
-            highlights::draw(&bundles, aims.point(sample - gather, rng))
+            let u = marks.point(sample - gather - guided, rng);
+            let (direction, side) = prepared.beacons.draw(emitters, patches, origin, &aims, u);
+            target = Some(side);
+            direction
         };
         let density = mean_pdf(direction);
         // Σ of the densities of all rays: response / mixture is the weight of a ray however it was drawn.
-        let mixture = f64::from(gather) * density
+        let mut mixture = f64::from(gather) * density
             + if guided > 0 { f64::from(guided) * highlights::density(&bundles, direction) } else { 0.0 };
         if !(mixture > 0.0) {
             continue;
         }
         see(prepared, origin, direction, ANALOG, rng, desk);
-        // Walks are of the first rays alone, which follow the responses.
-        let walked = sample < walks && density > 0.0 && !desk.sight.landings.is_empty();
+        if target.is_some_and(|side| !Beacons::came_to(patches, &desk.sight, side)) {
+            continue;
+        }
+        let by_aim = prepared.beacons.density(patches, origin, &aims, &desk.sight);
+        mixture += f64::from(aimed) * by_aim;
+        // Walks are of the first rays of those that follow the responses, and of those to bright patches.
+        let first = if target.is_some() { sample - gather - guided < aimed_walks } else { sample < walks };
+        let walked = first && density > 0.0 && !desk.sight.landings.is_empty();
         if walked {
             walk(prepared, rng, desk);
         }
+        let walk_density = f64::from(walks) * density + f64::from(aimed_walks) * by_aim;
         for (k, kernel) in kernels.iter().enumerate() {
             let response = kernel.response(direction);
             for channel in 0..channels {
                 let mut value = response / mixture * desk.seen[channel];
                 if walked {
-                    value += response / (density * f64::from(walks)) * desk.residual[channel];
+                    value += response / walk_density * desk.residual[channel];
                 }
                 out[(k * channels + channel) * PARTS + Part::Indirect as usize] += value;
             }
         }
     }
     desk.bundles = bundles;
+    desk.aims = aims;
 }
 
 /// Direct light = unshadowed light (exact) − what is kept off (sampled): no noise where nothing shades.
@@ -330,31 +358,55 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         *residual += here.weight * direct;
     }
     let mut bundles = std::mem::take(&mut desk.bundles);
+    let mut aims = std::mem::take(&mut desk.aims_here);
     bundles.clear();
+    aims.clear();
+    // Density of the directions that reflection and transmission draw, times π.
+    let scattered = |direction: DVec3| {
+        let cos = here.normal.dot(direction);
+        cos.abs() * if cos > 0.0 { reflectance } else { transmittance } / albedo
+    };
     if !(transmittance > 0.0) {
-        let response = |direction| here.normal.dot(direction);
-        prepared.highlights.about(emitters, here.origin(scene, true), response, &mut bundles);
+        prepared.highlights.about(emitters, here.origin(scene, true), scattered, &mut bundles);
     }
+    prepared.beacons.about(here.point, scattered, 1, &mut aims);
+    let patches = field(prepared).patches();
     let looks = effort.looks.max(1);
     let guided = u32::from(!bundles.is_empty());
+    let aimed = u32::from(!aims.is_empty());
     desk.onward.clear();
-    for number in 0..looks + guided {
+    for number in 0..looks + guided + aimed {
+        let mut target = None;
         let mut share = here.weight * albedo / f64::from(looks);
-        let (same_side, direction) = if number < looks {
-            let same_side = rng.uniform() * albedo < reflectance;
-            let facing = if same_side { here.normal } else { -here.normal };
-            (same_side, sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms()))
+        let direction = if number < looks {
+            let facing = if rng.uniform() * albedo < reflectance { here.normal } else { -here.normal };
+            sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms())
+        } else if number < looks + guided {
+            highlights::draw(&bundles, rng.uniforms())
         } else {
-            (true, highlights::draw(&bundles, rng.uniforms()))
+            let u = rng.uniforms();
+            let (direction, side) = prepared.beacons.draw(emitters, patches, here.point, &aims, u);
+            target = Some(side);
+            direction
         };
+        let cosine = f64::from(looks) * scattered(direction) * FRAC_1_PI;
+        let mut mixture = cosine;
         if guided > 0 {
-            let cosine = f64::from(looks) * here.normal.dot(direction).max(0.0) * FRAC_1_PI;
-            share *= cosine / (cosine + highlights::density(&bundles, direction));
-            if !(share > 0.0) {
-                continue;
-            }
+            mixture += highlights::density(&bundles, direction);
         }
-        look(emitters, here.origin(scene, same_side), direction, ANALOG, rng, &mut desk.sight);
+        if guided + aimed > 0 && !(cosine > 0.0) {
+            continue;
+        }
+        let origin = here.origin(scene, here.normal.dot(direction) > 0.0);
+        look(emitters, origin, direction, ANALOG, rng, &mut desk.sight);
+        if target.is_some_and(|side| !Beacons::came_to(patches, &desk.sight, side)) {
+            continue;
+        }
+        let by_aim = prepared.beacons.density(patches, origin, &aims, &desk.sight);
+        if guided + aimed > 0 {
+            mixture += by_aim;
+            share *= cosine / mixture;
+        }
         for (residual, met) in desk.residual.iter_mut().zip(&desk.sight.met) {
             *residual += share * met;
         }
@@ -364,12 +416,24 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
                 *residual += share * next.weight * stored;
             }
         }
-        // The walk goes on along the first look, which follows the cosine.
-        if number == 0 {
-            desk.onward.extend_from_slice(&desk.sight.landings);
+        // The walk goes on along the first look, which follows the cosine, and may branch to a bright patch
+        // along the one that was aimed: each with its share of the mixture of the two.
+        let one = cosine / f64::from(looks);
+        let branch = prepared.beacons.branch(patches, &desk.sight, one / (one + by_aim), albedo);
+        let part = match (branch, target) {
+            (None, None) => 1.0,
+            (None, Some(_)) => continue,
+            (Some(Branch { part, .. }), None) => part,
+            (Some(Branch { chance, .. }), Some(_)) if !(rng.uniform() < chance) => continue,
+            (Some(Branch { part, chance }), Some(_)) => part / chance,
+        };
+        if number == 0 || target.is_some() {
+            let parted = |landing: &Landing| Landing { weight: landing.weight * part, ..*landing };
+            desk.onward.extend(desk.sight.landings.iter().map(parted));
         }
     }
     desk.bundles = bundles;
+    desk.aims_here = aims;
     if !desk.onward.is_empty() && rng.uniform() < albedo {
         let weighted = |next: &Landing| Landing { weight: here.weight * next.weight, ..*next };
         desk.pending.extend(desk.onward.iter().map(weighted));
@@ -377,6 +441,10 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
 }
 
 fn stored<'p>(prepared: &'p Prepared, landing: &Landing) -> &'p [f64] {
-    let field = prepared.field.as_ref().expect("the links method always has a field");
+    let field = field(prepared);
     field.at(field.patches().side_at(landing.triangle, landing.barycentric, landing.front))
+}
+
+fn field<'p>(prepared: &'p Prepared) -> &'p LuminanceField {
+    prepared.field.as_ref().expect("the links method always has a field")
 }

@@ -22,6 +22,8 @@ pub(super) struct Sight {
     pub met: Vec<f64>,
     /// Where the ray arrived; more than one only behind glossy surfaces.
     pub landings: Vec<Landing>,
+    /// Whether the first landing lies on the ray itself, mirrors not met.
+    pub straight: bool,
     /// Rays traced so far.
     pub counts: Counts,
     /// Luminaires considered at one place: source, luminance, arrival, side.
@@ -97,7 +99,7 @@ fn follow(
     direction: DVec3,
     weight: f64,
     rng: &mut Rng,
-    Sight { met, counts, .. }: &mut Sight,
+    Sight { met, landings, straight, counts, .. }: &mut Sight,
 ) -> Option<Landing> {
     let scene = emitters.scene;
     let (mut origin, mut direction) = (origin, direction);
@@ -119,6 +121,9 @@ fn follow(
         let normal = if hit.front { front } else { -front };
         let cos = -direction.dot(normal);
         let Some((reflected, passed)) = scene.bsdf(hit.triangle).specular(cos) else {
+            if landings.is_empty() {
+                *straight = reflections == 0;
+            }
             return Some(Landing {
                 weight,
                 to_eye: -direction,

@@ -2,6 +2,7 @@
 //! replicate of everything a [`Demand`] asks. It knows no norm, no observer and no report.
 
 mod answer;
+mod beacons;
 mod chains;
 mod covered;
 mod double;
@@ -25,6 +26,8 @@ use crate::field::LuminanceField;
 use crate::query::{Demand, Ray};
 use crate::rng::Rng;
 use crate::scene::Scene;
+
+use beacons::Beacons;
 
 pub use glance::{GlanceEffort, Mended, glances, mend};
 pub use local::{LocalEffort, LocalKernel, SeenForm};
@@ -71,6 +74,8 @@ pub struct Effort {
     pub gather: u32,
     /// Rays drawn about highlights, per receiver and block where a glossy plane reflects luminaires.
     pub highlights: u32,
+    /// Rays drawn to bright patches, per receiver and block where a few of them make most of its light.
+    pub beacons: u32,
     /// Residual walks per receiver and block, ≤ `gather`.
     pub walks: u32,
     /// Rays by which a residual vertex looks at the field around it; the walk goes on along the first.
@@ -95,6 +100,7 @@ impl Default for Effort {
             links: 32,
             gather: 16,
             highlights: 4,
+            beacons: 8,
             walks: 2,
             looks: 4,
             shadow_rays: 8.0,
@@ -118,6 +124,8 @@ pub struct Prepared<'s> {
     highlights: highlights::Highlights,
     /// The stored field; empty for the path tracer.
     field: Option<LuminanceField>,
+    /// Bright patches of the field.
+    beacons: Beacons,
     /// What chains start from; only for local estimation.
     origins: Option<chains::Origins>,
     /// Largest G = cos θ cos θ′/d² of a connection, 1/m²; the rest is made up for.
@@ -195,6 +203,9 @@ pub fn prepare<'s>(
         Method::Links => Some(prepare::field(&emitters, &highlights, &effort, seed)),
         Method::Path | Method::Local | Method::Double => None,
     };
+    let beacons = field.as_ref().map_or_else(Beacons::default, |field| {
+        Beacons::new(scene, field.patches(), |side| field.at(side).iter().sum())
+    });
     let unshadowed = match method {
         Method::Links | Method::Local | Method::Double => unshadowed_rows(&emitters, demand),
         Method::Path => Vec::new(),
@@ -212,6 +223,7 @@ pub fn prepare<'s>(
         method,
         seed,
         field,
+        beacons,
         origins,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,

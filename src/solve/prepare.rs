@@ -8,6 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Effort;
+use super::beacons::{Aims, Beacons};
 use super::covered::{Cavities, Cover, place};
 use super::highlights::{self, Highlights};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
@@ -23,6 +24,8 @@ const PATCHES: f64 = 1500.0;
 const DIRECT_SAMPLES: u32 = 4;
 /// One link in this many is doubled by a ray about the highlights that may be seen from its place.
 const AIMED: u32 = 4;
+/// One link in this many is joined by one to a bright patch, where a few of them make most of the light.
+const MARKED: u32 = 2;
 /// Sweeps end when the stored flux changes by less than this share …
 const SETTLED: f64 = 1e-3;
 /// … or after this many; the rest is left to the residual.
@@ -48,10 +51,20 @@ struct Collected {
     first: Vec<f64>,
     /// Patch sides where its links end.
     links: Vec<u32>,
+    /// Share of each link that counts; empty if all count wholly.
+    shares: Vec<f64>,
     /// Number of places from which the links start.
     places: u32,
     /// The part of it that light reaches.
     reached: Reached,
+}
+
+impl Collected {
+    /// Where the links end, and the share of each that counts.
+    fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
+        let share = |index: usize| self.shares.get(index).copied().unwrap_or(1.0);
+        self.links.iter().enumerate().map(move |(index, &link)| (link as usize, share(index)))
+    }
 }
 
 /// A field, and what pictures want to know of it.
@@ -91,10 +104,11 @@ pub(super) fn parts(emitters: &Emitters, highlights: &Highlights, effort: &Effor
         })
         .unzip();
     let cavities = Cavities::new(emitters, &patches, &lit, seed);
+    let beacons = Beacons::new(scene, &patches, |side| lights[side].direct.iter().sum());
     let collected: Vec<Collected> = lights
         .into_par_iter()
         .enumerate()
-        .map(|(side, light)| collect(&cavities, highlights, effort, side, light))
+        .map(|(side, light)| collect(&cavities, highlights, &beacons, effort, side, light))
         .collect();
     let mut field = LuminanceField::dark(patches, channels);
     let mut direct = field.clone();
@@ -129,6 +143,7 @@ fn first_light(emitters: &Emitters, patches: &Patches, side: usize, mut rng: Rng
 fn collect(
     cavities: &Cavities,
     highlights: &Highlights,
+    beacons: &Beacons,
     effort: &Effort,
     side: usize,
     FirstLight { mut direct, mut rng, .. }: FirstLight,
@@ -141,12 +156,13 @@ fn collect(
     let cover = cavities.covers[side];
     if !(total > 0.0) {
         let (first, reached) = (direct.clone(), Reached::Whole);
-        return Collected { direct, first, links: Vec::new(), places: 0, reached };
+        return Collected { direct, first, links: Vec::new(), shares: Vec::new(), places: 0, reached };
     }
     let mut sight = Sight::new(channels);
     let (places, directions) = (Stratified::new(rng), Stratified::new(rng));
     let mut bundles = Vec::new();
     let mut links = Vec::with_capacity(effort.links as usize);
+    let (mut shares, mut aims) = (Vec::new(), Aims::default());
     let mut met = vec![0.0; channels];
     let mut taken = Vec::new();
     for link in 0..effort.links {
@@ -182,10 +198,35 @@ fn collect(
                 *sum += share * value;
             }
         }
-        // A link through a glossy surface ends on its diffuse part and once more where its lobe leads.
-        for landing in &sight.landings {
-            add_emission(scene, landing.triangle, &mut met, landing.weight);
-            links.push(patches.side_at(landing.triangle, landing.barycentric, landing.front) as u32);
+        // Density of the directions that reflection and transmission draw, times π.
+        let scattered = |direction: DVec3| {
+            let cos = at.normal.dot(direction);
+            cos.abs() * if cos > 0.0 { reflectance } else { transmittance } / total
+        };
+        beacons.about(at.point, scattered, 1, &mut aims);
+        let mut end = |sight: &Sight, share: f64| {
+            // A link through a glossy surface ends on its diffuse part and once more where its lobe leads.
+            for landing in &sight.landings {
+                add_emission(scene, landing.triangle, &mut met, share * landing.weight);
+                links.push(patches.side_at(landing.triangle, landing.barycentric, landing.front) as u32);
+                if !beacons.is_empty() {
+                    shares.push(share);
+                }
+            }
+        };
+        let share = |direction: DVec3, sight: &Sight| {
+            let by_aim = beacons.density(patches, at.point, &aims, sight) / f64::from(MARKED);
+            let drawn = scattered(direction) * FRAC_1_PI;
+            if by_aim > 0.0 { drawn / (drawn + by_aim) } else { 1.0 }
+        };
+        end(&sight, share(direction, &sight));
+        if link % MARKED == 0 && !aims.is_empty() {
+            let (direction, target) = beacons.draw(emitters, patches, at.point, &aims, rng.uniforms());
+            let origin = at.origin(scene, at.normal.dot(direction) > 0.0);
+            look(emitters, origin, direction, 1.0, rng, &mut sight);
+            if Beacons::came_to(patches, &sight, target) {
+                end(&sight, share(direction, &sight));
+            }
         }
     }
     let (places, reached) = match cover {
@@ -201,7 +242,7 @@ fn collect(
     for (value, met) in first.iter_mut().zip(&met) {
         *value += met * total / f64::from(places.max(1));
     }
-    Collected { direct, first, links, places, reached }
+    Collected { direct, first, links, shares, places, reached }
 }
 
 /// Mean luminance that direct light makes at some of the places.
@@ -240,9 +281,9 @@ fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: &[Collected
                 continue;
             }
             sums.fill(0.0);
-            for &link in &entry.links {
-                for (sum, value) in sums.iter_mut().zip(field.at(link as usize)) {
-                    *sum += value;
+            for (link, share) in entry.ends() {
+                for (sum, value) in sums.iter_mut().zip(field.at(link)) {
+                    *sum += share * value;
                 }
             }
             let area = field.patches().area_m2(side) * entry.reached.share();
@@ -267,7 +308,7 @@ fn balance(field: &mut LuminanceField, collected: &[Collected], factor: &[f64]) 
     for channel in 0..channels {
         let (mut fed, mut lost) = (0.0, 0.0);
         for (side, entry) in collected.iter().enumerate() {
-            let sum: f64 = entry.links.iter().map(|&link| field.at(link as usize)[channel]).sum();
+            let sum: f64 = entry.ends().map(|(link, share)| share * field.at(link)[channel]).sum();
             let area = field.patches().area_m2(side) * entry.reached.share();
             fed += area * entry.first[channel];
             lost += area * (field.at(side)[channel] - factor[side] * sum);

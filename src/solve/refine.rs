@@ -2,11 +2,12 @@
 //! split. A point source near a plane, or a hall of which a corner is lit, needs small patches in one
 //! place; rooms that are lit evenly keep those they have. It decides noise, never a result.
 
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
+use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::emitters::Emitters;
+use crate::emitters::{Emitters, Source};
 use crate::field::{Patches, Place};
 
 /// A patch is split if the flux that its constant luminance puts in the wrong place exceeds this share
@@ -16,6 +17,10 @@ const TOLERANCE: f64 = 0.25;
 const MOST: usize = 3;
 /// Places by which a patch that joins triangles is judged.
 const SAMPLES: usize = 8;
+/// Lamps whose squared distance from its middle is below this many times its area may make a spot on it; a
+/// foot this much outside of a triangle, in units of the area, is still within.
+const NEAR: f64 = 4.0;
+const EDGE: f64 = 1e-9;
 
 /// Splits the patches of an even mesh.
 pub(super) fn refine(emitters: &Emitters, patches: &mut Patches) {
@@ -56,15 +61,50 @@ fn misplaced(emitters: &Emitters, patches: &Patches, patch: usize) -> (f64, f64)
         .map(|(place, share)| (lit_lx(emitters, triangle, place), share))
         .collect();
     let area_m2 = patches.area_m2(2 * patch);
+    let spots = spots(emitters, patches, patch);
     let (mut wrong, mut all) = (0.0, 0.0);
     for facing in 0..2 {
         let luminance =
             |lx: &[f64; 2]| FRAC_1_PI * (reflectance * lx[facing] + transmittance * lx[1 - facing]);
         let mean: f64 = lit.iter().map(|(lx, share)| share * luminance(lx)).sum();
+        for (lx, spot_m2) in &spots {
+            let in_spot = luminance(lx) * spot_m2;
+            wrong += in_spot * (1.0 - spot_m2 / area_m2);
+            all += in_spot;
+        }
         wrong += area_m2 * lit.iter().map(|(lx, share)| share * (luminance(lx) - mean).abs()).sum::<f64>();
         all += area_m2 * mean;
     }
     (wrong, all)
+}
+
+/// Spots smaller than the patch that lamps above it make where their perpendicular meets it: illuminance in
+/// front and behind there, and the area π d² over which it falls off, m². Samples would miss them.
+fn spots(emitters: &Emitters, patches: &Patches, patch: usize) -> Vec<([f64; 2], f64)> {
+    let mesh = &emitters.scene.mesh;
+    let (triangle, area_m2) = (patches.triangle(2 * patch), patches.area_m2(2 * patch));
+    let (middle, _) = patches.centre(mesh, 2 * patch);
+    let spot = |source: &Source| {
+        let near = (source.position - middle).length_squared() < NEAR * area_m2;
+        if !near || source.mirror.is_some() || !emitters.lights(source, triangle) {
+            return None;
+        }
+        patches.outlines(mesh, patch).find_map(|[a, b, c]| {
+            let normal = (b - a).cross(c - a).normalize();
+            let height_m = (source.position - a).dot(normal);
+            let spot_m2 = PI * (height_m * height_m).max(source.radius_m * source.radius_m);
+            let foot = source.position - normal * height_m;
+            let inside =
+                |from: DVec3, to: DVec3| (to - from).cross(foot - from).dot(normal) >= -EDGE * area_m2;
+            if !(spot_m2 < area_m2 && inside(a, b) && inside(b, c) && inside(c, a)) {
+                return None;
+            }
+            let arrival = emitters.arrival_if(source, foot, [0.5; 2], |_| true)?;
+            let lx = arrival.normal_lx * normal.dot(arrival.direction).abs();
+            lx.is_finite().then_some((if height_m > 0.0 { [lx, 0.0] } else { [0.0, lx] }, spot_m2))
+        })
+    };
+    emitters.sources.iter().filter_map(spot).collect()
 }
 
 /// Illuminance in front and behind from the centres of all openings, nothing standing between, lx.

@@ -166,6 +166,21 @@ pub fn furnished() -> Scene {
     Scene::new(mesh, materials, lamps).expect("the scene is valid")
 }
 
+/// The furnished room lit by what is hard to find: a lamp 1 cm from a wall and a small bright tile.
+pub fn spots() -> Scene {
+    let Scene { mut mesh, mut materials, .. } = furnished();
+    let tile = mesh.add_surface("tile", materials.len(), true);
+    let corners = [[1.2, 2.5, 1.3], [1.35, 2.5, 1.3], [1.35, 2.65, 1.3], [1.2, 2.65, 1.3]];
+    // In mirrors and panes both methods find spots by chance.
+    materials[4] = lambert("no mirror", 0.3);
+    mesh.add_quad(corners.map(DVec3::from_array), tile);
+    let bsdf = Bsdf::Emitter { luminance_cd_m2: 3e4, reflectance: 0.5 };
+    materials.push(Material { name: "tile".into(), bsdf });
+    let mut spot = point_lamp(2000.0, DVec3::new(5.99, 1.0, 1.3));
+    spot.group = "B".into();
+    Scene::new(mesh, materials, vec![spot]).expect("the scene is valid")
+}
+
 pub fn glossy(name: &str, reflectance: f64, lobe: Lobe) -> Material {
     Material { name: name.into(), bsdf: Bsdf::Glossy { reflectance, lobe } }
 }

@@ -3,6 +3,7 @@
 
 use super::areas::light_scene_index;
 use super::draft::{Draft, room_named, room_names};
+use crate::glare::index;
 use crate::material::Bsdf;
 use crate::norm::{self, Standard};
 use crate::project::choices::GoalChoice;
@@ -206,12 +207,7 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
         let span = section.span();
         let section = section.get_ref();
         let light_scene = light_scene_index(section.light_scene.as_ref(), light_scenes, context);
-        let quantity = Quantity::parse(section.quantity.get_ref());
-        if quantity.is_none() {
-            let hint = suggestion(section.quantity.get_ref(), SPELLINGS.iter().copied());
-            let message = format!("unknown quantity \"{}\"", section.quantity.get_ref());
-            context.error(&section.quantity.span(), message, &hint);
-        }
+        let quantity = required_quantity(section, context);
         let statistic = section.statistic.as_ref().map(|key| {
             let statistic = Statistic::parse(key.get_ref());
             if statistic.is_none() {
@@ -235,6 +231,12 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
         if !suits(subject, quantity, &section.quantity, context) {
             continue;
         }
+        let quantity = match (subject, index::parse(section.quantity.get_ref())) {
+            (CustomSubject::Viewpoint(_), Some(of_view)) if quantity != Quantity::Ugr => {
+                Quantity::OfView { key: of_view.key, unit: of_view.unit }
+            }
+            _ => quantity,
+        };
         let statistic = statistic.unwrap_or(Some(match (subject, quantity) {
             (CustomSubject::Viewpoint(_), _) => Statistic::Value,
             (_, quantity) if quantity.is_single() => Statistic::Value,
@@ -259,19 +261,49 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
     }
 }
 
+/// The quantity that a requirement names; of a viewpoint also a row of the table of indices.
+fn required_quantity(section: &RequireSection, context: &mut Context) -> Option<Quantity> {
+    let name = section.quantity.get_ref();
+    let of_view = index::parse(name).map(|row| Quantity::OfView { key: row.key, unit: row.unit });
+    let quantity = Quantity::parse(name).or(of_view);
+    if quantity.is_none() {
+        let message = format!("unknown quantity \"{name}\"");
+        let hint = if section.viewpoint.is_some() {
+            suggestion(name, indices_of_views())
+        } else {
+            suggestion(name, SPELLINGS.iter().copied())
+        };
+        context.error(&section.quantity.span(), message, &hint);
+    }
+    quantity
+}
+
+/// Keys of all that can be required of a viewpoint.
+fn indices_of_views() -> impl Iterator<Item = &'static str> {
+    index::INDICES.iter().map(|row| row.key)
+}
+
 /// Whether a quantity exists where it is required: what nothing could ever decide is a mistake, not
 /// a requirement that is left unassessed.
 fn suits(subject: CustomSubject, quantity: Quantity, name: &At<String>, context: &mut Context) -> bool {
     let single = quantity.is_single();
+    let of_view = index::parse(name.get_ref()).is_some();
+    let of_views = || format!("a viewpoint has {}", indices_of_views().collect::<Vec<_>>().join(", "));
     let (what, hint) = match subject {
-        CustomSubject::Room(_) if !single => ("a room", "it is measured on areas: name one, area = \"…\""),
-        CustomSubject::Area(_) if single => ("an area", "require it of a room or, UGR, of a viewpoint"),
-        CustomSubject::Viewpoint(_) if quantity != Quantity::Ugr => {
-            ("a viewpoint", "a viewpoint has UGR only")
+        CustomSubject::Room(_) if matches!(quantity, Quantity::OfView { .. }) => {
+            ("a room", "it is one of a view: name a viewpoint, viewpoint = \"…\"".to_owned())
         }
+        CustomSubject::Room(_) if !single => {
+            ("a room", "it is measured on areas: name one, area = \"…\"".to_owned())
+        }
+        CustomSubject::Area(_) if of_view => {
+            ("an area", "it is one of a view: name a viewpoint, viewpoint = \"…\"".to_owned())
+        }
+        CustomSubject::Area(_) if single => ("an area", "require it of a room".to_owned()),
+        CustomSubject::Viewpoint(_) if !of_view => ("a viewpoint", of_views()),
         CustomSubject::Room(_) | CustomSubject::Area(_) | CustomSubject::Viewpoint(_) => return true,
     };
-    context.error(&name.span(), format!("{} is no quantity of {what}", name.get_ref()), hint);
+    context.error(&name.span(), format!("{} is no quantity of {what}", name.get_ref()), &hint);
     false
 }
 

@@ -137,6 +137,7 @@ impl<'e> Glimpse<'e> {
             distance_m: towards.length(),
             solid_angle_sr: Estimate::exact(self.solid_angle_sr, blocks),
             normal_lx: Estimate::exact(self.normal_lx, blocks),
+            covariance_lx_sr: 0.0,
             light: self.light,
             visible_fraction: 1.0,
             projected_area_m2: self.source.opening.projected_area_m2(leaving),

@@ -21,6 +21,9 @@ pub struct Glare {
     /// Of a project: glare maps by blocks of unbiased answers in place of look-ups, which takes far longer
     #[arg(long, requires = "project")]
     pub unbiased: bool,
+    /// Of a project: values from a field that `solve` kept (its file or folder) with nothing solved anew; no interval
+    #[arg(long, value_name = "FILE", requires = "project", conflicts_with_all = ["compare_methods", "unbiased", "blocks"])]
+    pub field: Option<PathBuf>,
     /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
     #[arg(long, value_name = "DIR", requires = "project")]
     pub out: Option<PathBuf>,

@@ -88,20 +88,24 @@ impl Seen {
 /// All sources of which anything is visible from `eye`, within the half-space of nothing: the
 /// caller knows the gaze. Draws from `seed` only, so it repeats exactly.
 pub fn seen_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Seen> {
-    let one = |index: usize| {
-        let mut rng = Rng::new(seed, u64::MAX, index as u64);
-        let found = sampled(emitters, index, eye, &mut rng, POINTS)?;
-        if !found.pieces.is_empty() && found.visible_fraction < LITTLE.0 {
-            return sampled(emitters, index, eye, &mut rng, LITTLE.1 * POINTS);
-        }
-        Some(found)
-    };
+    (0..emitters.sources.len()).filter_map(|index| seen(emitters, index, eye, seed, POINTS)).collect()
+}
+
+/// [`seen_from`] by so many points of every opening in each of 16 replicates, for references.
+pub fn seen_by_points(emitters: &Emitters, eye: DVec3, seed: u64, points: u32) -> Vec<Seen> {
+    let one =
+        |index: usize| sampled(emitters, index, eye, &mut Rng::new(seed, u64::MAX, index as u64), points);
     (0..emitters.sources.len()).filter_map(one).collect()
 }
 
-/// A source by `points` of its opening in each replicate.
+/// A source by `points` of its opening in each replicate, more where little is visible.
 pub(super) fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -> Option<Seen> {
-    sampled(emitters, index, eye, &mut Rng::new(seed, u64::MAX, index as u64), points)
+    let mut rng = Rng::new(seed, u64::MAX, index as u64);
+    let found = sampled(emitters, index, eye, &mut rng, points)?;
+    if !found.pieces.is_empty() && found.visible_fraction < LITTLE.0 {
+        return sampled(emitters, index, eye, &mut rng, LITTLE.1 * points);
+    }
+    Some(found)
 }
 
 fn sampled(emitters: &Emitters, index: usize, eye: DVec3, rng: &mut Rng, points: u32) -> Option<Seen> {

@@ -70,6 +70,9 @@ pub struct Glare {
     /// Half height of a horizontal band whose luminance is asked for, rad
     #[arg(long, value_name = "ANGLE", value_parser = positive)]
     pub band: Option<f64>,
+    /// Statistics of luminance gradients too: experimental, in no norm and no verdict
+    #[arg(long, conflicts_with = "project")]
+    pub experimental: bool,
     /// Age of the observer, years; veiling luminance asks for it
     #[arg(long, value_name = "YEARS", default_value_t = 25.0, value_parser = positive)]
     pub age: f64,

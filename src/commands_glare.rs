@@ -5,6 +5,7 @@ use std::path::Path;
 
 use gershun::glare::detect::{Search, Threshold};
 use gershun::glare::field::Cone;
+use gershun::glare::gradient::{SCALE_DEG, gradient};
 use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
@@ -43,7 +44,8 @@ pub fn run(glare: &Glare) -> u8 {
         let options = options(glare, &image).map_err(|error| format!("{}: {error}", path.display()))?;
         let found = glare_of_image(&image, mask.as_ref(), &options)
             .map_err(|undefined| format!("{}: {undefined}{}", path.display(), hint(&image)))?;
-        Ok(report::Evaluated { file: path.display().to_string(), glare: found })
+        let gradient = glare.experimental.then(|| gradient(&image, SCALE_DEG));
+        Ok(report::Evaluated { file: path.display().to_string(), glare: found, gradient })
     };
     let (mut worst, mut evaluated) = (COMPLIES, Vec::with_capacity(glare.image.len()));
     for result in glare.image.par_iter().map(evaluate).collect::<Vec<_>>() {

@@ -82,7 +82,7 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
     let mut all = Vec::new();
     if matches!(map.method, MapMethod::Swift(_)) {
         all.push("Indirect light is looked up in a stored field that walks have mended on the mean over each patch; how it varies within a patch is left, and no interval holds it.");
-        all.push("A luminaire is wholly visible if its corners and 16 points of it are; luminous surfaces are seen in pieces of 0.02 sr.");
+        all.push("A luminaire is wholly visible if its corners and 16 points of it are; what none of 52 points shows is not seen; luminous surfaces are seen in pieces of 0.02 sr.");
     }
     if map.glossy {
         all.push("Highlights on glossy surfaces belong to the background.");

@@ -21,6 +21,9 @@ pub struct Glare {
     /// Of a project: glare maps by blocks of unbiased answers in place of look-ups, which takes far longer
     #[arg(long, requires = "project")]
     pub unbiased: bool,
+    /// Of a project: values from a field that `solve` kept (its file or folder) with nothing solved anew; no interval
+    #[arg(long, value_name = "FILE", requires = "project", conflicts_with_all = ["compare_methods", "unbiased", "blocks"])]
+    pub field: Option<PathBuf>,
     /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
     #[arg(long, value_name = "DIR", requires = "project")]
     pub out: Option<PathBuf>,
@@ -67,6 +70,9 @@ pub struct Glare {
     /// Half height of a horizontal band whose luminance is asked for, rad
     #[arg(long, value_name = "ANGLE", value_parser = positive)]
     pub band: Option<f64>,
+    /// Statistics of luminance gradients too: experimental, in no norm and no verdict
+    #[arg(long, conflicts_with = "project")]
+    pub experimental: bool,
     /// Age of the observer, years; veiling luminance asks for it
     #[arg(long, value_name = "YEARS", default_value_t = 25.0, value_parser = positive)]
     pub age: f64,

@@ -103,9 +103,13 @@ pub(crate) fn add(
 }
 
 /// What each omission may cost of a requirement's margin, one sentence each. Table values and
-/// declared ones do not come from solving and are at no such risk.
+/// declared ones do not come from solving and are at no such risk; of an index of glare the share of
+/// light that is missing tells nothing.
 pub(crate) fn risks(biases: &[Bias], requirement: &Requirement) -> Vec<String> {
-    let computed = !matches!(requirement.quantity, Quantity::Ugr | Quantity::ColourRendering);
+    let computed = !matches!(
+        requirement.quantity,
+        Quantity::Ugr | Quantity::ColourRendering | Quantity::OfView { unit: "1" | "%", .. }
+    );
     let Some(margin) = requirement.margin.filter(|_| computed) else { return Vec::new() };
     biases
         .iter()

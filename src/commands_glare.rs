@@ -5,12 +5,14 @@ use std::path::Path;
 
 use gershun::glare::detect::{Search, Threshold};
 use gershun::glare::field::Cone;
+use gershun::glare::gradient::{SCALE_DEG, gradient};
 use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
 use gershun::image::{LuminanceImage, ViewOptions, read};
 use gershun::observe::map::{MapMethod, Mapped, maps};
-use gershun::observe::{CONVENTIONS, Observed, observe, room_tables};
+use gershun::observe::stored::observe_stored;
+use gershun::observe::{CONVENTIONS, Observed, Sheets, observe, room_tables};
 use gershun::project::read_image;
 use gershun::report::Lang;
 use gershun::report::glare as report;
@@ -20,7 +22,8 @@ use rayon::prelude::*;
 
 use crate::args_glare::{DgpChoice, Glare, GlareFormat, Peak, PositionChoice};
 use crate::commands_run::open;
-use crate::{BAD_INPUT, COMPLIES, complain, say};
+use crate::commands_solve::stored;
+use crate::{BAD_INPUT, COMPLIES, complain, remark, say};
 
 /// Multiple of the task's luminance that is the threshold if none is given.
 const TASK_FACTOR: f64 = 5.0;
@@ -41,7 +44,8 @@ pub fn run(glare: &Glare) -> u8 {
         let options = options(glare, &image).map_err(|error| format!("{}: {error}", path.display()))?;
         let found = glare_of_image(&image, mask.as_ref(), &options)
             .map_err(|undefined| format!("{}: {undefined}{}", path.display(), hint(&image)))?;
-        Ok(report::Evaluated { file: path.display().to_string(), glare: found })
+        let gradient = glare.experimental.then(|| gradient(&image, SCALE_DEG));
+        Ok(report::Evaluated { file: path.display().to_string(), glare: found, gradient })
     };
     let (mut worst, mut evaluated) = (COMPLIES, Vec::with_capacity(glare.image.len()));
     for result in glare.image.par_iter().map(evaluate).collect::<Vec<_>>() {
@@ -76,8 +80,29 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
         Err(code) => return code,
     };
     let conventions = if glare.compare_methods { &CONVENTIONS[..] } else { &CONVENTIONS[..1] };
-    let observed = observe(&project, conventions, glare.blocks as usize);
-    let maps = if glare.compare_methods { Vec::new() } else { maps(&project, method(glare)) };
+    let observed = match &glare.field {
+        None => observe(&project, conventions, glare.blocks as usize),
+        Some(field) => {
+            let sheets = if glare.out.is_some() { Sheets::All } else { Sheets::None };
+            match stored(field, &project) {
+                Ok(fields) => observe_stored(&project, fields, sheets),
+                Err(error) => return complain(&error),
+            }
+        }
+    };
+    let maps = if glare.compare_methods || glare.field.is_some() {
+        Vec::new()
+    } else {
+        maps(&project, method(glare))
+    };
+    if glare.field.is_some() && !glare.run.quiet {
+        if project.worlds.iter().any(|world| !world.glare_maps.is_empty()) {
+            remark("glare maps are left out: they need a field that was mended for them");
+        }
+        if glare.format == GlareFormat::Csv {
+            observed.first().into_iter().flat_map(|view| &view.approximations).for_each(|said| remark(said));
+        }
+    }
     if observed.is_empty() && maps.is_empty() {
         let hint = "hint: add [[viewpoint]] with eye and direction";
         return complain(&format!("the project has no viewpoint and no glare map\n  {hint}"));

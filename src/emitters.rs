@@ -24,7 +24,7 @@ pub use direct::{TOLERANCE, contour, unshadowed};
 pub use glimpsed::glimpsed_from;
 pub use glints::{Glint, GlintPiece, glints_from};
 pub use images::{Mirror, planes};
-pub use seen::{Seen, SeenPiece, Sighted, seen_from, sighted_from};
+pub use seen::{Seen, SeenPiece, Sighted, seen_by_points, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
 
 /// All luminaires of a scene and their images.

@@ -72,12 +72,19 @@ pub fn blocks_needed(gauged: &Gauged, quantity: Quantity, bound: Bound, blocks: 
 
 /// The least factor by which all luminaires may be dimmed together: every illuminance is linear in it,
 /// its interval too, and uniformities and ratios do not change. UGR only falls, which is not counted.
-/// `None` where no illuminance is required from below, or one has no value.
+/// `None` where no illuminance is required from below, or one has no value, or an index of glare must not
+/// fall.
 pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
     let is_level = |r: &&Requirement| matches!(r.quantity.unit(), "lx" | "cd/m²") && !r.statistic.is_ratio();
     let judged = |r: &&Requirement| {
         matches!(r.verdict, Verdict::Pass | Verdict::Fail | Verdict::Undecided | Verdict::Undefined)
     };
+    let must_not_fall = |r: &&Requirement| {
+        matches!(r.bound, Bound::Min(_)) && matches!(r.quantity, Quantity::Ugr | Quantity::OfView { .. })
+    };
+    if requirements.iter().filter(must_not_fall).filter(judged).any(|r| !is_level(&r)) {
+        return None;
+    }
     let mut least: Option<(f64, &Requirement)> = None;
     for requirement in requirements.iter().filter(is_level).filter(judged) {
         let Bound::Min(limit) = requirement.bound else { continue };
@@ -106,15 +113,15 @@ pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
     })
 }
 
-/// A value as norms print it, rounded half-up: illuminance to three significant figures, ratios to
-/// 0.01, UGR to 0.1.
+/// A value as norms print it, rounded half-up: illuminance and luminance to three significant figures,
+/// ratios and probabilities to 0.01, UGR and other indices of glare to 0.1.
 pub fn printed(value: f64, quantity: Quantity, statistic: Statistic) -> f64 {
     let to = |step: f64| ((value / step) + 0.5 + 1e-12).floor() * step;
-    if statistic.is_ratio() || quantity == Quantity::Modelling {
+    if statistic.is_ratio() || quantity == Quantity::Modelling || quantity.is_probability() {
         to(0.01)
-    } else if quantity == Quantity::Ugr {
+    } else if matches!(quantity, Quantity::Ugr | Quantity::OfView { unit: "1" | "%", .. }) {
         to(0.1)
-    } else if quantity.is_single() {
+    } else if quantity.is_single() && !matches!(quantity, Quantity::OfView { .. }) {
         value
     } else if value > 0.0 && value.is_finite() {
         to(10f64.powi(value.log10().floor() as i32 - 2))

@@ -4,6 +4,7 @@
 pub mod body;
 pub mod cards;
 pub mod map;
+pub mod stored;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -59,6 +60,8 @@ pub struct Observed {
     pub e_v_lx: f64,
     /// Whether no other direction of this viewpoint has a higher UGR by this convention.
     pub worst: bool,
+    /// What its values approximate, one sentence each; empty where they are unbiased.
+    pub approximations: Vec<String>,
     /// UGR of a picture of the view, where conventions are compared and a card is made.
     pub image: Option<ImageReading>,
     /// The view with its card: of the worst direction, or the only one, by the default convention.
@@ -124,61 +127,81 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
     let sheets: Vec<Sheet> =
         (0..blocks as u64).into_par_iter().map(|block| answer(&prepared, block)).collect();
     let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
-    let alpha = 1.0 - project.accuracy.confidence;
     let first_rows = demand.first_rows();
-    let one = |index: usize| -> Vec<Observed> {
-        let viewpoint = &world.viewpoints[index];
-        let light_scene = &project.light_scenes[viewpoint.light_scene.unwrap_or(0)];
-        let weights = weights(world, light_scene, &world.rooms[viewpoint.room], false);
-        let sighted = sighted_from(prepared.emitters(), viewpoint.eye, seed, viewpoint.highlights);
-        let mut found = Vec::new();
-        for &convention in conventions {
-            let start = found.len();
-            let mut glares = Vec::with_capacity(viewpoint.directions.len());
-            for (number, &gaze) in viewpoint.directions.iter().enumerate() {
-                let row = first_rows[index] + number;
-                let light = view::EyeLight::of_row(&answers, row, &weights);
-                let asked = view::Asked { gaze, indices: &viewpoint.indices, convention };
-                let glare = view::glare(&light, prepared.emitters(), &sighted, &asked, &weights, alpha);
-                found.push(Observed {
-                    viewpoint: viewpoint.name.clone(),
-                    light_scene: light_scene.name.clone(),
-                    eye: viewpoint.eye,
-                    azimuth_deg: gaze.y.atan2(gaze.x).to_degrees() + 0.0,
-                    tilt_deg: gaze.z.clamp(-1.0, 1.0).asin().to_degrees(),
-                    convention,
-                    ugr: glare.ugr.interval(),
-                    indices: glare.indices.iter().map(view::GaugedIndex::outcome).collect(),
-                    background_cd_m2: glare.background_cd_m2,
-                    e_v_lx: glare.e_v_lx,
-                    worst: false,
-                    sheet: None,
-                    image: None,
-                });
-                glares.push(glare);
-            }
-            mark_worst(&mut found[start..]);
-            for (view, number) in found[start..].iter_mut().zip(0..) {
-                if convention == Convention::default() && (view.worst || viewpoint.directions.len() == 1) {
-                    let gaze = viewpoint.directions[number];
-                    view.image =
-                        (conventions.len() > 1).then(|| of_image(&prepared, viewpoint.eye, gaze, &weights));
-                    view.sheet = Some(Box::new(sheet(
-                        view,
-                        gaze,
-                        &prepared,
-                        &sighted,
-                        &weights,
-                        glares.swap_remove(number),
-                    )));
-                    break;
-                }
-            }
-        }
-        found
+    let light = |index: usize, number: usize, weights: &[f64], _: &Sighted| {
+        view::EyeLight::of_row(&answers, first_rows[index] + number, weights)
     };
+    let one = |index: usize| of_viewpoint(project, world, index, &prepared, conventions, Sheets::All, light);
     let each: Vec<Vec<Observed>> = (0..world.viewpoints.len()).into_par_iter().map(one).collect();
     each.into_iter().flatten().collect()
+}
+
+/// Which views get a sheet with a card, whose picture takes most of the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sheets {
+    /// The worst direction of every viewpoint.
+    All,
+    /// None.
+    None,
+}
+
+/// A viewpoint in all its directions; `light` is that in the eye for a viewpoint and the number of a direction.
+fn of_viewpoint(
+    project: &Project,
+    world: &World,
+    index: usize,
+    prepared: &Prepared,
+    conventions: &[Convention],
+    sheets: Sheets,
+    light: impl Fn(usize, usize, &[f64], &Sighted) -> view::EyeLight,
+) -> Vec<Observed> {
+    let alpha = 1.0 - project.accuracy.confidence;
+    let viewpoint = &world.viewpoints[index];
+    let light_scene = &project.light_scenes[viewpoint.light_scene.unwrap_or(0)];
+    let weights = weights(world, light_scene, &world.rooms[viewpoint.room], false);
+    let sighted = sighted_from(prepared.emitters(), viewpoint.eye, prepared.seed(), viewpoint.highlights);
+    let mut found = Vec::new();
+    for &convention in conventions {
+        let start = found.len();
+        let mut glares = Vec::with_capacity(viewpoint.directions.len());
+        for (number, &gaze) in viewpoint.directions.iter().enumerate() {
+            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention };
+            let light = light(index, number, &weights, &sighted);
+            let glare = view::glare(&light, prepared.emitters(), &sighted, &asked, &weights, alpha);
+            found.push(Observed {
+                viewpoint: viewpoint.name.clone(),
+                light_scene: light_scene.name.clone(),
+                eye: viewpoint.eye,
+                azimuth_deg: gaze.y.atan2(gaze.x).to_degrees() + 0.0,
+                tilt_deg: gaze.z.clamp(-1.0, 1.0).asin().to_degrees(),
+                convention,
+                ugr: glare.ugr.interval(),
+                indices: glare.indices.iter().map(view::GaugedIndex::outcome).collect(),
+                background_cd_m2: glare.background_cd_m2,
+                e_v_lx: glare.e_v_lx,
+                worst: false,
+                approximations: Vec::new(),
+                sheet: None,
+                image: None,
+            });
+            glares.push(glare);
+        }
+        mark_worst(&mut found[start..]);
+        if sheets == Sheets::None {
+            continue;
+        }
+        for (view, number) in found[start..].iter_mut().zip(0..) {
+            if convention == Convention::default() && (view.worst || viewpoint.directions.len() == 1) {
+                let gaze = viewpoint.directions[number];
+                view.image =
+                    (conventions.len() > 1).then(|| of_image(prepared, viewpoint.eye, gaze, &weights));
+                let glare = glares.swap_remove(number);
+                view.sheet = Some(Box::new(sheet(view, gaze, prepared, &sighted, &weights, glare)));
+                break;
+            }
+        }
+    }
+    found
 }
 
 fn of_image(prepared: &Prepared, eye: DVec3, gaze: DVec3, weights: &[f64]) -> ImageReading {

@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use crate::grid::{Grid, GridError};
 use crate::outcome::{Bound, Modified};
-use crate::project::{AreaKind, AreaShape, Modification, Place, Project, World};
+use crate::project::{AreaKind, AreaShape, CustomSubject, Modification, Place, Project, World};
 use crate::quantity::{Property, Quantity, Statistic};
 use crate::query::{Demand, Kernel, Receiver};
 
@@ -97,7 +97,7 @@ pub struct PlannedView {
     pub direction: DVec3,
     /// Row of the illuminance at the eye.
     pub row: usize,
-    /// Keys of the indices asked for beside UGR.
+    /// Keys of the indices asked for beside UGR, by the viewpoint or by a requirement.
     pub indices: Vec<&'static str>,
     /// Light scene by which it is judged.
     pub light_scene: usize,
@@ -224,6 +224,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
     let mut errors = Vec::new();
     areas::plan(project, world, &mut plan, &mut errors);
     for (index, viewpoint) in world.viewpoints.iter().enumerate() {
+        let indices = indices(world, index);
         for &direction in &viewpoint.directions {
             let row = plan.ask(Receiver {
                 point: viewpoint.eye,
@@ -236,7 +237,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 eye: viewpoint.eye,
                 direction,
                 row,
-                indices: viewpoint.indices.clone(),
+                indices: indices.clone(),
                 light_scene: viewpoint.light_scene.unwrap_or(0),
                 highlights: viewpoint.highlights,
             });
@@ -247,6 +248,21 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
     plan.demand.flux = true;
     explain(project, world, &mut plan);
     if errors.is_empty() { Ok(plan) } else { Err(errors) }
+}
+
+/// Keys of the indices that a viewpoint lists, and of those that are required there.
+fn indices(world: &World, viewpoint: usize) -> Vec<&'static str> {
+    let mut keys = world.viewpoints[viewpoint].indices.clone();
+    for requirement in &world.requirements {
+        if let (Quantity::OfView { key, .. }, CustomSubject::Viewpoint(view)) =
+            (requirement.quantity, requirement.subject)
+            && view == viewpoint
+            && !keys.contains(&key)
+        {
+            keys.push(key);
+        }
+    }
+    keys
 }
 
 impl Plan {

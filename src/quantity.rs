@@ -43,6 +43,14 @@ pub enum Quantity {
     ColourRendering,
     /// Discomfort index M of older Russian norms, 1: M = 10^((UGR + 4.8)/16), from the table UGR.
     DiscomfortIndex,
+    /// An index of glare or another figure of a view, as a requirement on a viewpoint names it: a row of
+    /// `glare::index`, without its function.
+    OfView {
+        /// Key of the row.
+        key: &'static str,
+        /// Its unit, `1` for none.
+        unit: &'static str,
+    },
     /// Another property of the light sources: declared, never computed.
     Declared(Property),
     /// What norms limit and gershun does not compute: always "not assessed".
@@ -179,12 +187,23 @@ impl Quantity {
                 | Self::Intensity
                 | Self::ColourRendering
                 | Self::DiscomfortIndex
+                | Self::OfView { .. }
                 | Self::Declared(_)
                 | Self::NotComputed(_)
         )
     }
 
+    /// Whether it is a probability of being disturbed, between 0 and 1, which norms print with two decimals.
+    pub fn is_probability(self) -> bool {
+        matches!(
+            self,
+            Self::OfView { key: "DGP" | "DGPs" | "UGP" | "UGP2", .. }
+                | Self::NotComputed(Unmeasured::DaylightGlare)
+        )
+    }
+
     /// Reads a spelling such as `E_h`, `E_v@90` or `L@45,-10`; `None` if it is not one of [`SPELLINGS`].
+    /// [`Quantity::OfView`] has no spelling of its own: `M` and `DGP` mean something else of a room.
     pub fn parse(text: &str) -> Option<Self> {
         let finite = |number: &str| number.trim().parse::<f64>().ok().filter(|x| x.is_finite());
         let (name, argument) = match text.split_once('@') {
@@ -235,6 +254,7 @@ impl Quantity {
             Self::Intensity => "I".into(),
             Self::ColourRendering => "R_a".into(),
             Self::DiscomfortIndex => "M".into(),
+            Self::OfView { key, .. } => key.into(),
             Self::Declared(property) => property.key().into(),
             Self::NotComputed(quantity) => quantity.key().into(),
         }
@@ -252,6 +272,7 @@ impl Quantity {
             | Self::Spherical => "lx",
             Self::Luminance { .. } => "cd/m²",
             Self::Intensity => "cd",
+            Self::OfView { unit, .. } => unit,
             Self::Declared(Property::Pulsation) | Self::NotComputed(Unmeasured::DaylightFactor) => "%",
             Self::Modelling
             | Self::Ugr

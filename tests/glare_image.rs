@@ -83,3 +83,41 @@ fn options_move_what_they_name_and_mistakes_end_with_two() {
         assert!(code == 2 && err.contains(hint), "{code} {err}");
     }
 }
+
+/// Catches: experimental figures that are shown without being asked for, or without being called so.
+#[test]
+fn luminance_gradients_are_experimental_and_only_where_asked_for() {
+    use gershun::image::{LuminanceImage, Projection, View};
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("ramp.hdr").display().to_string();
+    let fisheye = Projection::AngularFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
+    let view = View::new(fisheye, glam::DVec3::ZERO, glam::DVec3::Y, glam::DVec3::Z).expect("a view");
+    let size = [400, 400];
+    let luminance = |index: usize| {
+        let direction = view.direction(size, [(index % 400) as f64 + 0.5, (index / 400) as f64 + 0.5]);
+        direction.map_or(0.0, |d| 100.0 * 10f64.powf(0.02 * d.z.clamp(-1.0, 1.0).asin().to_degrees()))
+    };
+    let image = LuminanceImage::new(400, 400, Some(view), (0..160_000).map(luminance).collect());
+    std::fs::write(&path, gershun::image::write_hdr(&image)).expect("written");
+    let told = |more: &[&str]| {
+        let arguments = [&["glare", "--image", &path][..], more].concat();
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_gershun")).args(arguments).output();
+        let output = output.expect("it runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).expect("UTF-8")
+    };
+    for format in ["human", "json", "csv"] {
+        let (plain, more) = (told(&["--format", format]), told(&["--format", format, "--experimental"]));
+        assert!(!plain.to_lowercase().contains("experimental_l") && !plain.contains("lg L"), "{plain}");
+        assert!(more.to_lowercase().contains("experimental"), "{more}");
+    }
+    let json: serde_json::Value =
+        serde_json::from_str(&told(&["--format", "json", "--experimental"])).unwrap();
+    let found = &json["experimental_luminance_gradient"];
+    assert_eq!(found["standing"], "experimental");
+    // The file keeps one part in 256 of each luminance, which is 0.0017 decades: noise on 0.02 a degree.
+    let mean = found["mean"].as_f64().expect("a mean");
+    assert!((mean / 0.02 - 1.0).abs() < 0.1, "{mean}");
+    assert_eq!(found["histogram"].as_array().map(Vec::len), Some(7));
+    assert!(json["indices"].get("gradient").is_none(), "no index");
+}

@@ -13,7 +13,7 @@ use crate::estimate::scheffe;
 use crate::measure::area;
 use crate::outcome::{Bound, GroupDimming, GroupFactor, Verdict};
 use crate::plan::{PlannedQuantity, PlannedRequirement, Rows, Subject};
-use crate::quantity::Statistic;
+use crate::quantity::{Quantity, Statistic};
 use crate::scene::Channel;
 
 /// Cuts after which the point found is taken as it is; it is checked in any case.
@@ -70,6 +70,12 @@ impl Context<'_> {
     pub(super) fn group_dimming(&self, room: usize) -> Option<GroupDimming> {
         let (groups, prices, unit) = self.groups(room)?;
         let full = self.requirements(room);
+        // What an eye must get at least is no mean over an area: no bound here holds it for all factors.
+        if full.iter().any(|r| {
+            matches!((r.quantity, r.bound), (Quantity::Ugr | Quantity::OfView { .. }, Bound::Min(_)))
+        }) {
+            return None;
+        }
         let judged = |verdict| matches!(verdict, Verdict::Fail | Verdict::Undecided | Verdict::Undefined);
         if full.iter().any(|r| judged(r.verdict)) || !full.iter().any(|r| r.verdict == Verdict::Pass) {
             return None;

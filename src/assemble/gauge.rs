@@ -6,10 +6,10 @@ use crate::glare::source::NO_SOURCE;
 use crate::luminaire::LuminaireType;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{self, Gauged, area, intensity, room_ugr, view};
-use crate::outcome::{UgrTableOutcome, Verdict};
+use crate::outcome::{Bound, UgrTableOutcome, Verdict};
 use crate::plan::{PlannedRequirement, Subject};
 use crate::project::{Declared, Room};
-use crate::quantity::Property;
+use crate::quantity::{Property, Quantity};
 use crate::scene::Channel;
 use crate::units::Undefined;
 
@@ -32,11 +32,14 @@ impl Context<'_> {
                 let blocks = self.blocks(asked, planned.light_scene, entry);
                 (area::gauge(&blocks, planned.statistic, alpha), self.condition().note().into(), None)
             }
-            Subject::Viewpoint(viewpoint) => (
-                self.worst_view(room, *viewpoint, planned.light_scene, alpha),
-                Convention::default().words(),
-                None,
-            ),
+            Subject::Viewpoint(viewpoint) => {
+                let (worst, notes) = self.worst_view(room, *viewpoint, planned, alpha);
+                let mut note = Convention::default().words();
+                for said in notes {
+                    note = format!("{note}; {said}");
+                }
+                (worst, note, None)
+            }
             Subject::OfTask(place, quantity, task, of) => {
                 let areas = &self.plan.rooms[room].areas;
                 let own = self.blocks(&areas[*place].quantities[*quantity], planned.light_scene, entry);
@@ -165,37 +168,71 @@ impl Context<'_> {
         of(&kind.name).or(listed).or_else(|| of(&room.name)).or(of_file(kind))
     }
 
-    /// The worst direction of a viewpoint: its lower end uncorrected, its upper end for all directions.
-    /// A direction in which no source is visible is never the worst, unless it is so in all.
-    fn worst_view(&self, room: usize, viewpoint: usize, light_scene: usize, alpha: f64) -> Gauged {
+    /// The worst direction of a viewpoint for a requirement, with what is to be said of it: its end next to
+    /// the limit for all directions, the other one uncorrected. Worst is the largest value under an upper
+    /// limit, the smallest above a lower one. A direction in which no source is visible is never the worst,
+    /// unless it is so in all.
+    fn worst_view(
+        &self,
+        room: usize,
+        viewpoint: usize,
+        planned: &PlannedRequirement,
+        alpha: f64,
+    ) -> (Gauged, Vec<String>) {
         let views: Vec<usize> = (0..self.plan.rooms[room].views.len())
             .filter(|&index| self.plan.rooms[room].views[index].viewpoint == viewpoint)
             .collect();
         let each = alpha / views.len().max(1) as f64;
-        let (mut worst, mut dark): (Option<Gauged>, Option<Gauged>) = (None, None);
+        let worse: fn(f64, f64) -> f64 = match planned.bound {
+            Bound::Max(_) => f64::max,
+            Bound::Min(_) => f64::min,
+        };
+        let (mut worst, mut dark): (Option<(Gauged, Vec<String>)>, Option<Gauged>) = (None, None);
         for &index in &views {
-            let gauged = self.glare(room, index, light_scene, each, &[]).ugr;
-            match &gauged.value {
+            let (gauged, notes) = self.of_view(room, index, planned, each);
+            let value = match &gauged.value {
                 Err(undefined) if undefined.reason == NO_SOURCE => {
                     dark = Some(gauged);
                     continue;
                 }
-                Err(_) => return gauged,
-                Ok(_) => {}
-            }
-            let value = gauged.value.clone().unwrap_or(f64::NAN);
+                Err(_) => return (gauged, Vec::new()),
+                Ok(value) => *value,
+            };
             worst = Some(match worst {
-                None => gauged,
-                Some(known) => {
-                    let (lo, hi) = (known.lo.max(gauged.lo), known.hi.max(gauged.hi));
-                    let greater = value > known.value.clone().unwrap_or(f64::NAN);
-                    Gauged { lo, hi, ..if greater { gauged } else { known } }
+                None => (gauged, notes),
+                Some((known, known_notes)) => {
+                    let (lo, hi) = (worse(known.lo, gauged.lo), worse(known.hi, gauged.hi));
+                    let before = known.value.clone().unwrap_or(f64::NAN);
+                    let is_worse = value.to_bits() != before.to_bits()
+                        && worse(value, before).to_bits() == value.to_bits();
+                    let (found, notes) = if is_worse { (gauged, notes) } else { (known, known_notes) };
+                    (Gauged { lo, hi, ..found }, notes)
                 }
             });
         }
-        worst
-            .or(dark)
-            .unwrap_or_else(|| Gauged::undefined(Undefined::because("the viewpoint has no direction")))
+        let nowhere = || Gauged::undefined(Undefined::because("the viewpoint has no direction"));
+        worst.unwrap_or_else(|| (dark.unwrap_or_else(nowhere), Vec::new()))
+    }
+
+    /// The quantity that a requirement asks of one direction, and what is to be said of it there. UGR's own
+    /// notes stand with its observer.
+    fn of_view(
+        &self,
+        room: usize,
+        index: usize,
+        planned: &PlannedRequirement,
+        alpha: f64,
+    ) -> (Gauged, Vec<String>) {
+        let Quantity::OfView { key, .. } = planned.quantity else {
+            return (self.glare(room, index, planned.light_scene, alpha, &[]).ugr, Vec::new());
+        };
+        let mut asked = self.glare(room, index, planned.light_scene, alpha, &[key]).indices;
+        let Some(one) = asked.pop() else {
+            return (Gauged::undefined(Undefined::because("no such index")), Vec::new());
+        };
+        let mut notes = vec!["initial flux".to_owned()];
+        notes.extend(one.notes);
+        (one.gauged, notes)
     }
 
     /// Glare of a planned view; `indices` are wanted beside UGR.

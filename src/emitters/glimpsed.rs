@@ -22,6 +22,8 @@ const GAUSS4: [(f64, f64); 4] = [
 const CORNERS: [[f64; 2]; 4] = [[0.001, 0.001], [0.999, 0.001], [0.999, 0.999], [0.001, 0.999]];
 /// Points of an opening of another shape.
 const POINTS: u32 = 64;
+/// Points more of an opening of which none of those was seen.
+const HIDDEN_POINTS: u32 = 32;
 /// Points in each of the replicates by which an opening that is hidden in part is sampled.
 const PART_POINTS: u32 = 16;
 /// Transmittances to an opening in plain sight differ by at most this factor (panes seen aslant).
@@ -66,7 +68,16 @@ fn glimpsed(emitters: &Emitters, index: usize, eye: DVec3, seed: u64) -> Option<
         }
     }
     if !(glimpse.most > 0.0) {
-        return None;
+        // A strip may show between the nodes.
+        let mut rng = Rng::new(seed, u64::MAX, index as u64);
+        let sequence = Stratified::new(&mut rng);
+        let seen_at_all = (0..HIDDEN_POINTS).any(|point| {
+            glimpse.add(sequence.point(point, &mut rng), 0.0);
+            glimpse.most > 0.0
+        });
+        if !seen_at_all {
+            return None;
+        }
     }
     if glimpse.most > ALIKE * glimpse.least {
         return seen(emitters, index, eye, seed, PART_POINTS);
@@ -137,6 +148,7 @@ impl<'e> Glimpse<'e> {
             distance_m: towards.length(),
             solid_angle_sr: Estimate::exact(self.solid_angle_sr, blocks),
             normal_lx: Estimate::exact(self.normal_lx, blocks),
+            covariance_lx_sr: 0.0,
             light: self.light,
             visible_fraction: 1.0,
             projected_area_m2: self.source.opening.projected_area_m2(leaving),

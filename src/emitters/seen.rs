@@ -5,13 +5,16 @@ use glam::DVec3;
 use super::Emitters;
 use super::glints::{Glint, glints_from};
 use super::shining::{Shining, shining_from};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Pair};
 use crate::rng::{Rng, Stratified};
 
 /// Replicates from which the errors of visible quantities are taken.
 pub(super) const REPLICATES: usize = 16;
 /// Points of the opening in each replicate.
 const POINTS: u32 = 32;
+/// Where less than this share is visible, so few points hit it that their spread says little: it is sampled
+/// anew, by this many times the points.
+const LITTLE: (f64, u32) = (0.25, 8);
 /// Pieces of an opening along each of its two parameters.
 const PIECES: usize = 8;
 
@@ -28,6 +31,8 @@ pub struct Seen {
     pub solid_angle_sr: Estimate,
     /// ∫ L dω over the visible part, lx on a plane facing the source: I/d² of what is visible.
     pub normal_lx: Estimate,
+    /// Covariance of the two, lx·sr: they come from the same rays.
+    pub covariance_lx_sr: f64,
     /// ∫ L d dω over the visible part, d the unit direction from the eye, lx: its part along a normal is
     /// the illuminance on a plane that has all of it in front.
     pub light: DVec3,
@@ -86,13 +91,29 @@ pub fn seen_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Vec<Seen> {
     (0..emitters.sources.len()).filter_map(|index| seen(emitters, index, eye, seed, POINTS)).collect()
 }
 
+/// [`seen_from`] by so many points of every opening in each of 16 replicates, for references.
+pub fn seen_by_points(emitters: &Emitters, eye: DVec3, seed: u64, points: u32) -> Vec<Seen> {
+    let one =
+        |index: usize| sampled(emitters, index, eye, &mut Rng::new(seed, u64::MAX, index as u64), points);
+    (0..emitters.sources.len()).filter_map(one).collect()
+}
+
+/// A source by `points` of its opening in each replicate, more where little is visible.
 pub(super) fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, points: u32) -> Option<Seen> {
+    let mut rng = Rng::new(seed, u64::MAX, index as u64);
+    let found = sampled(emitters, index, eye, &mut rng, points)?;
+    if !found.pieces.is_empty() && found.visible_fraction < LITTLE.0 {
+        return sampled(emitters, index, eye, &mut rng, LITTLE.1 * points);
+    }
+    Some(found)
+}
+
+fn sampled(emitters: &Emitters, index: usize, eye: DVec3, rng: &mut Rng, points: u32) -> Option<Seen> {
     let source = &emitters.sources[index];
     if !emitters.may_show(source, eye) {
         return None;
     }
     let centre = source.position - eye;
-    let mut rng = Rng::new(seed, u64::MAX, index as u64);
     let mut solid = Vec::with_capacity(REPLICATES);
     let mut light = Vec::with_capacity(REPLICATES);
     let mut whole = 0.0;
@@ -102,10 +123,10 @@ pub(super) fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, poi
     let place = source.place(eye);
     let mut cells = [(DVec3::ZERO, 0.0, 0.0); PIECES * PIECES];
     for _ in 0..REPLICATES {
-        let sequence = Stratified::new(&mut rng);
+        let sequence = Stratified::new(rng);
         let (mut solid_sr, mut normal_lx) = (0.0, 0.0);
         for point in 0..points {
-            let u = if points == 1 { [0.5, 0.5] } else { sequence.point(point, &mut rng) };
+            let u = if points == 1 { [0.5, 0.5] } else { sequence.point(point, rng) };
             let Some(shine) = source.opening.shine(place, u) else { continue };
             let away = place - shine.at;
             let projected_m2 = source.opening.projected_area_m2(away.normalize_or_zero());
@@ -132,6 +153,7 @@ pub(super) fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, poi
     if !(passed_sum > 0.0) {
         return None;
     }
+    let joint = Pair::from_blocks(&light, &solid);
     let solid_angle_sr = Estimate::from_blocks(&solid);
     let count = REPLICATES as f64 * f64::from(points);
     let whole_sr = whole / count;
@@ -142,6 +164,7 @@ pub(super) fn seen(emitters: &Emitters, index: usize, eye: DVec3, seed: u64, poi
         visible_fraction: if whole_sr > 0.0 { solid_angle_sr.value / whole_sr } else { 1.0 },
         solid_angle_sr,
         normal_lx: Estimate::from_blocks(&light),
+        covariance_lx_sr: joint.cov,
         light: vector / count,
         projected_area_m2: source.opening.projected_area_m2(place.normalize_or_zero()),
         centre_lx: emitters.luminaire(source).kind.distribution.intensity_along(place.normalize_or_zero())

@@ -13,6 +13,7 @@ pub mod discomfort;
 pub mod field;
 pub mod ggr;
 pub mod gr;
+pub mod gradient;
 pub mod index;
 pub mod luminances;
 pub mod of_image;

@@ -27,11 +27,27 @@ pub struct SourceError {
     pub light: f64,
     /// Of ω at the same light: a larger ω means a lower luminance.
     pub solid_angle: f64,
+    /// Relative covariance of the two. Both come from the same rays: what hides half of an opening takes light
+    /// and solid angle alike, and L²ω then moves by as much as ω, not by three times as much. `None` where it is
+    /// not known: the effects are added, which no covariance can exceed.
+    pub together: Option<f64>,
+    /// Degrees of freedom from which these errors are known.
+    pub degrees: usize,
 }
 
-/// Standard error of an index of first order. Sources and indirect light are independent; the two
-/// errors of a source come from the same rays, so their effects are added, which no correlation
-/// between them can exceed.
+/// A standard error and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Standard error.
+    pub se: f64,
+    /// Degrees of freedom of Student's interval about the value.
+    pub degrees: usize,
+}
+
+/// Standard error of an index of first order. Sources and indirect light are independent.
+///
+/// Degrees of freedom by Welch and Satterthwaite, ν = (Σ v)²/Σ(v²/ν_i) over the variances v of the inputs;
+/// the light at the eye has `degrees` of them.
 ///
 /// # Errors
 /// The index is undefined here or next to here.
@@ -39,7 +55,8 @@ pub fn standard_error(
     index: impl Fn(&Sight) -> Result<f64, Undefined>,
     sight: &Sight,
     error: &SightError,
-) -> Result<f64, Undefined> {
+    degrees: usize,
+) -> Result<Spread, Undefined> {
     let mut changed = sight.clone();
     let mut slope = |change: &dyn Fn(&mut Sight, f64), touched: Option<usize>, step: f64| {
         let mut at = |step: f64| {
@@ -53,9 +70,9 @@ pub fn standard_error(
             }
             value
         };
-        Ok::<f64, Undefined>((at(step)? - at(-step)?).abs() / (2.0 * step))
+        Ok::<f64, Undefined>((at(step)? - at(-step)?) / (2.0 * step))
     };
-    let mut variance = 0.0;
+    let mut parts: Vec<(f64, usize)> = Vec::new();
     if error.e_indirect_lx > 0.0 {
         let per_lx = slope(
             &|sight, step_lx| {
@@ -65,7 +82,7 @@ pub fn standard_error(
             None,
             STEP * sight.e_indirect_lx().abs(),
         )?;
-        variance += (per_lx * error.e_indirect_lx).powi(2);
+        parts.push(((per_lx * error.e_indirect_lx).powi(2), degrees));
     }
     if let Some(se_lx) = error.e_direct_lx.filter(|se_lx| *se_lx > 0.0) {
         let per_lx = slope(
@@ -76,22 +93,33 @@ pub fn standard_error(
             None,
             STEP * sight.e_v_lx.abs(),
         )?;
-        variance += (per_lx * se_lx).powi(2);
+        parts.push(((per_lx * se_lx).powi(2), degrees));
     }
     let own = error.e_direct_lx.is_some();
     for (position, source) in error.sources.iter().enumerate() {
-        let mut effects = 0.0;
+        let (mut by_light, mut by_size) = (0.0, 0.0);
         if source.light > 0.0 {
-            let by_share = slope(&|sight, step| brighten(sight, position, step, own), Some(position), STEP)?;
-            effects += source.light * by_share;
+            by_light = slope(&|sight, step| brighten(sight, position, step, own), Some(position), STEP)?;
         }
         if source.solid_angle > 0.0 {
             let change = |sight: &mut Sight, step| widen(&mut sight.sources[position], step);
-            effects += source.solid_angle * slope(&change, Some(position), STEP)?;
+            by_size = slope(&change, Some(position), STEP)?;
         }
-        variance += effects * effects;
+        let alone = [by_light * source.light, by_size * source.solid_angle];
+        let variance = match source.together {
+            // Rounding may leave a covariance a little beyond what its variances allow.
+            Some(together) => {
+                (alone[0] * alone[0] + alone[1] * alone[1] + 2.0 * by_light * by_size * together).max(0.0)
+            }
+            None => (alone[0].abs() + alone[1].abs()).powi(2),
+        };
+        parts.push((variance, source.degrees));
     }
-    Ok(variance.sqrt())
+    let variance: f64 = parts.iter().map(|(variance, _)| variance).sum();
+    let shares = parts.iter().filter(|(part, _)| *part > 0.0);
+    let doubt: f64 = shares.map(|(part, degrees)| part * part / (*degrees).max(1) as f64).sum();
+    let degrees = if doubt > 0.0 { (variance * variance / doubt).floor() as usize } else { degrees };
+    Ok(Spread { se: variance.sqrt(), degrees: degrees.max(1) })
 }
 
 /// More light from a source of the same size; E_dir is left alone where it was estimated on its own.
@@ -154,18 +182,35 @@ mod tests {
         let sight = view([1.0; 2], [1.0; 2], 250.0);
         let ugr = parse("UGR").unwrap().value;
         let error = SightError { e_indirect_lx: 2.5, ..SightError::default() };
-        let se = standard_error(ugr, &sight, &error).unwrap();
+        let se = standard_error(ugr, &sight, &error, 31).unwrap().se;
         assert!((se - 0.08 / std::f64::consts::LN_10).abs() < 1e-6, "{se}");
         let mut single = sight.clone();
         single.sources.truncate(1);
-        let light = SourceError { light: 0.01, solid_angle: 0.0 };
-        let se = standard_error(ugr, &single, &SightError { sources: vec![light], ..SightError::default() })
-            .unwrap();
-        assert!((se - 0.16 / std::f64::consts::LN_10).abs() < 1e-6, "{se}");
-        let size = SourceError { light: 0.0, solid_angle: 0.01 };
-        let se = standard_error(ugr, &single, &SightError { sources: vec![size], ..SightError::default() })
-            .unwrap();
-        assert!((se - 0.08 / std::f64::consts::LN_10).abs() < 1e-6, "{se}");
+        let of = |light: f64, solid_angle: f64, together: Option<f64>| {
+            let error = SourceError { light, solid_angle, together, degrees: 15 };
+            let error = SightError { sources: vec![error], ..SightError::default() };
+            let spread = standard_error(ugr, &single, &error, 31).unwrap();
+            assert_eq!(spread.degrees, 15, "the only error there is");
+            spread.se
+        };
+        let per_percent = 0.08 / std::f64::consts::LN_10;
+        assert!((of(0.01, 0.0, None) - 2.0 * per_percent).abs() < 1e-6);
+        assert!((of(0.0, 0.01, None) - per_percent).abs() < 1e-6);
+        // Half hidden: L stays, ω moves. Apart, and where nothing is known.
+        assert!((of(0.01, 0.01, Some(1e-4)) - per_percent).abs() < 1e-6);
+        assert!((of(0.01, 0.01, Some(0.0)) - 5f64.sqrt() * per_percent).abs() < 1e-6);
+        assert!((of(0.01, 0.01, None) - 3.0 * per_percent).abs() < 1e-6);
+    }
+
+    #[test]
+    fn degrees_of_freedom_lie_between_those_of_the_parts() {
+        // Two equal variances of 31 and 15 degrees: 4/(1/31 + 1/15) = 40.4. Catches the smaller or the sum taken.
+        let ugr = parse("UGR").unwrap().value;
+        let mut single = view([1.0; 2], [1.0; 2], 250.0);
+        single.sources.truncate(1);
+        let source = SourceError { light: 0.005, solid_angle: 0.0, together: Some(0.0), degrees: 15 };
+        let error = SightError { e_indirect_lx: 2.5, e_direct_lx: Some(0.0), sources: vec![source] };
+        assert_eq!(standard_error(ugr, &single, &error, 31).unwrap().degrees, 40);
     }
 
     #[test]
@@ -176,11 +221,13 @@ mod tests {
         let error = SightError {
             e_indirect_lx: 4.0,
             e_direct_lx: None,
-            sources: relative.map(|light| SourceError { light, solid_angle: 0.0 }).to_vec(),
+            sources: relative
+                .map(|light| SourceError { light, degrees: 31, ..SourceError::default() })
+                .to_vec(),
         };
         let sight = view([1.0; 2], [1.0; 2], 250.0);
         for index in INDICES {
-            let Ok(se) = standard_error(index.value, &sight, &error) else { continue };
+            let Ok(Spread { se, .. }) = standard_error(index.value, &sight, &error, 31) else { continue };
             let mut rng = Rng::new(3, 0, 0);
             let mut normal = || (0..12).map(|_| rng.uniform()).sum::<f64>() - 6.0;
             let drawn: Vec<f64> = (0..4000)

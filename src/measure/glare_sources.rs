@@ -83,6 +83,10 @@ pub struct Sources {
 /// weighted by the cosine: the factor that is usual for sources found in images.
 pub const HIGHLIGHT: f64 = 5.0;
 
+/// Degrees of freedom of the visibility of a luminous surface: those of one of its pieces, though several may
+/// be hidden in part.
+const PIECE_DEGREES: usize = 15;
+
 /// The sources in front of an eye that looks along `gaze`; `weights` are of the channels, `e_v_lx` is all
 /// the light on the plane of the eye.
 pub fn sources(
@@ -199,6 +203,7 @@ fn luminaire(
         }
     };
     let relative = |estimate: Estimate| if estimate.value > 0.0 { estimate.se / estimate.value } else { 0.0 };
+    let product = one.normal_lx.value * area_sr;
     Some(Counted {
         source: GlareSource {
             luminance: Nits(luminance),
@@ -212,7 +217,12 @@ fn luminaire(
                 distance_m: one.distance_m,
             }),
         },
-        error: SourceError { light: relative(one.normal_lx), solid_angle: relative(one.solid_angle_sr) },
+        error: SourceError {
+            light: relative(one.normal_lx),
+            solid_angle: relative(one.solid_angle_sr),
+            together: Some(if product > 0.0 { one.covariance_lx_sr / product } else { 0.0 }),
+            degrees: one.solid_angle_sr.n.saturating_sub(1),
+        },
         label: label(emitters, one.source),
         visible_fraction: one.visible_fraction,
         direction: one.light.try_normalize().unwrap_or(one.direction),
@@ -268,7 +278,15 @@ fn luminous_surface(
         .map(|piece| (piece.direction, piece.visible_sr, luminance * piece.passed_sr / piece.visible_sr));
     let (mean, solid_angle_sr, position_index) = merged(pieces, frame, notes)?;
     let passed_sr: f64 = ahead().map(|piece| piece.passed_sr).sum();
-    let se_sr = f64::sqrt(ahead().map(|piece| piece.se_sr * piece.se_sr).sum());
+    // Relative error of Σ ω/P², by which the pieces count.
+    let (mut weighted_sr, mut variance) = (0.0, 0.0);
+    for piece in ahead() {
+        if let Some(index) = frame.position(piece.direction, notes) {
+            weighted_sr += piece.passed_sr / (index * index);
+            variance += (piece.se_sr / (index * index)).powi(2);
+        }
+    }
+    let relative = f64::sqrt(variance) / weighted_sr;
     let visible_sr: f64 = surface.pieces.iter().map(|piece| piece.visible_sr).sum();
     let cos = eye_lx / (luminance * passed_sr);
     let distance_m = f64::sqrt(surface.projected_area_m2 / surface.whole_sr);
@@ -286,7 +304,12 @@ fn luminous_surface(
             }),
         },
         // Visibility moves light and solid angle together.
-        error: SourceError { light: se_sr / passed_sr, solid_angle: se_sr / passed_sr },
+        error: SourceError {
+            light: relative,
+            solid_angle: relative,
+            together: Some(relative * relative),
+            degrees: PIECE_DEGREES,
+        },
         label: format!(
             "{name} (luminous surface{})",
             if surface.mirror.is_some() { ", mirrored" } else { "" }
@@ -334,7 +357,12 @@ fn highlight(
             eye_lx: on_eye.value,
             extent: None,
         },
-        error: SourceError { light: whole.se / whole.value, solid_angle: size.se / size.value },
+        error: SourceError {
+            light: whole.se / whole.value,
+            solid_angle: size.se / size.value,
+            together: None,
+            degrees: glint.pieces.len().saturating_sub(1),
+        },
         label: format!("{luminaire}, highlight on {name}"),
         visible_fraction: 1.0,
         direction,

@@ -10,7 +10,7 @@ use super::{Answers, Gauged};
 use crate::emitters::{Emitters, Sighted};
 use crate::estimate::{Estimate, quantile};
 use crate::glare::index::{Index, parse};
-use crate::glare::propagate::{SightError, standard_error};
+use crate::glare::propagate::{SightError, Spread, standard_error};
 use crate::glare::source::{GlareSource, Sight};
 use crate::glare::ugr::{ugr, validity};
 use crate::outcome::{GlareSourceOutcome, IndexOutcome};
@@ -166,12 +166,12 @@ fn term(source: &GlareSource) -> f64 {
 /// An index with Student's interval about it.
 fn gauge(index: &Index, sight: &Sight, error: &SightError, blocks: usize, alpha: f64) -> Gauged {
     let value = (index.value)(sight);
-    let se = value.clone().and_then(|_| standard_error(index.value, sight, error));
-    match (value, se) {
+    let spread =
+        value.clone().and_then(|_| standard_error(index.value, sight, error, blocks.saturating_sub(1)));
+    match (value, spread) {
         (Err(reason), _) | (Ok(_), Err(reason)) => Gauged::undefined(reason),
-        (Ok(value), Ok(se)) => {
-            let half =
-                if se > 0.0 { quantile(1.0 - 0.5 * alpha, blocks.saturating_sub(1)) * se } else { 0.0 };
+        (Ok(value), Ok(Spread { se, degrees })) => {
+            let half = if se > 0.0 { quantile(1.0 - 0.5 * alpha, degrees) * se } else { 0.0 };
             Gauged { value: Ok(value), se, lo: value - half, hi: value + half, place: None }
         }
     }

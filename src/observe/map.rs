@@ -82,7 +82,7 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
     let mut all = Vec::new();
     if matches!(map.method, MapMethod::Swift(_)) {
         all.push("Indirect light is looked up in a stored field that walks have mended on the mean over each patch; how it varies within a patch is left, and no interval holds it.");
-        all.push("A luminaire is wholly visible if its corners and 16 points of it are; luminous surfaces are seen in pieces of 0.02 sr.");
+        all.push("A luminaire is wholly visible if its corners and 16 points of it are; what none of 52 points shows is not seen; luminous surfaces are seen in pieces of 0.02 sr.");
     }
     if map.glossy {
         all.push("Highlights on glossy surfaces belong to the background.");
@@ -91,7 +91,7 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
 }
 
 /// The usual effort of a swift map.
-pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 256, walks: 32 };
+pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 512, rough: 0.02, walks: 32 };
 
 /// All maps of a project.
 pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {
@@ -182,7 +182,12 @@ pub fn swift_eyes(
 }
 
 /// Illuminance of the plane of the eye straight from the luminaires that it sees.
-fn from_luminaires(sighted: &Sighted, emitters: &Emitters, gaze: DVec3, weights: &[f64]) -> Estimate {
+pub(super) fn from_luminaires(
+    sighted: &Sighted,
+    emitters: &Emitters,
+    gaze: DVec3,
+    weights: &[f64],
+) -> Estimate {
     let (mut value, mut variance) = (0.0, 0.0);
     for one in &sighted.luminaires {
         let weight = weights[emitters.sources[one.source].channel];
@@ -200,12 +205,27 @@ fn from_luminaires(sighted: &Sighted, emitters: &Emitters, gaze: DVec3, weights:
 
 /// The eyes of all maps of a world from blocks of unbiased answers.
 pub fn unbiased_eyes(project: &Project, world: &World, blocks: usize, effort: Effort) -> Vec<Vec<MappedEye>> {
+    let all: Vec<(&GlareMap, Vec<DVec3>)> =
+        world.glare_maps.iter().map(|map| (map, positions(map).0)).collect();
+    let see = |emitters: &Emitters, eye: DVec3| sighted_from(emitters, eye, project.accuracy.seed, false);
+    unbiased_at(project, world, &all, blocks, effort, see)
+}
+
+/// Some eyes of maps from blocks of unbiased answers; `see` tells what an eye sees of the luminaires.
+pub fn unbiased_at(
+    project: &Project,
+    world: &World,
+    all: &[(&GlareMap, Vec<DVec3>)],
+    blocks: usize,
+    effort: Effort,
+    see: impl Fn(&Emitters, DVec3) -> Sighted + Sync,
+) -> Vec<Vec<MappedEye>> {
     let seed = project.accuracy.seed;
     let mut demand = Demand::default();
-    for map in &world.glare_maps {
+    for (map, eyes) in all {
         let kernels: Vec<Kernel> = sights(map).into_iter().map(|normal| Kernel::Planar { normal }).collect();
-        let receiver = |point: DVec3| Receiver { point, lift: DVec3::ZERO, kernels: kernels.clone() };
-        demand.receivers.extend(positions(map).0.into_iter().map(receiver));
+        let receiver = |&point: &DVec3| Receiver { point, lift: DVec3::ZERO, kernels: kernels.clone() };
+        demand.receivers.extend(eyes.iter().map(receiver));
     }
     let prepared = prepare(&world.scene, &demand, Method::Links, effort, seed);
     let sheets: Vec<Sheet> =
@@ -216,12 +236,12 @@ pub fn unbiased_eyes(project: &Project, world: &World, blocks: usize, effort: Ef
     let convention = Convention::default();
     let mut receiver = 0;
     let mut found = Vec::new();
-    for map in &world.glare_maps {
+    for (map, eyes) in all {
         let light_scene = &project.light_scenes[map.light_scene.unwrap_or(0)];
         let weights = weights(world, light_scene, &world.rooms[map.room], false);
-        let (eyes, sights) = (positions(map).0, sights(map));
+        let sights = sights(map);
         let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
-            let sighted = sighted_from(emitters, position, seed, false);
+            let sighted = see(emitters, position);
             let views = sights.iter().enumerate().map(|(direction, &gaze)| {
                 let row = first_rows[receiver + number] + direction;
                 let light = view::EyeLight::of_row(&answers, row, &weights);

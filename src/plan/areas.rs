@@ -261,6 +261,7 @@ fn kernel(quantity: Quantity, normal: DVec3) -> Option<Kernel> {
         | Quantity::Intensity
         | Quantity::ColourRendering
         | Quantity::DiscomfortIndex
+        | Quantity::OfView { .. }
         | Quantity::Declared(_)
         | Quantity::NotComputed(_) => None,
     }

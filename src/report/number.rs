@@ -90,19 +90,23 @@ pub fn value_beside(lang: Lang, quantity: Quantity, statistic: Statistic, shown:
 /// A limit, without the zeros that rounding would add to UGR and R_a; a ratio of 0.025 (40 : 1) keeps its
 /// third decimal, or it would be said to be another limit.
 pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -> String {
+    let exact = |decimals: &i32| {
+        let scale = 10_f64.powi(*decimals);
+        ((limit * scale).round() / scale - limit).abs() < 1e-9
+    };
     if statistic.is_ratio() {
-        let exact = |decimals: &i32| {
-            let scale = 10_f64.powi(*decimals);
-            ((limit * scale).round() / scale - limit).abs() < 1e-9
-        };
         return fixed(lang, limit, (2..=4).find(exact).unwrap_or(2) as usize);
+    }
+    if matches!(quantity, Quantity::OfView { .. }) {
+        return fixed(lang, limit, (0..=4).find(exact).unwrap_or(4) as usize);
     }
     let whole = quantity.is_single() && limit.fract().abs() < 1e-9;
     if whole { fixed(lang, limit, 0) } else { value(lang, quantity, statistic, limit) }
 }
 
 fn is_luminance(quantity: Quantity, statistic: Statistic) -> bool {
-    matches!(quantity, Quantity::Luminance { .. }) && !statistic.is_ratio()
+    matches!(quantity, Quantity::Luminance { .. } | Quantity::OfView { unit: "cd/m²", .. })
+        && !statistic.is_ratio()
 }
 
 fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
@@ -116,13 +120,16 @@ fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
         | Quantity::Cylindrical
         | Quantity::Semicylindrical { .. }
         | Quantity::Hemispherical
-        | Quantity::Spherical => illuminance_decimals(value),
+        | Quantity::Spherical
+        | Quantity::OfView { unit: "lx", .. } => illuminance_decimals(value),
+        Quantity::OfView { .. } if quantity.is_probability() => 3,
         Quantity::Luminance { .. } | Quantity::Intensity | Quantity::ColourRendering => 0,
         Quantity::Modelling
         | Quantity::Declared(Property::PstLm | Property::Svm)
         | Quantity::NotComputed(Unmeasured::DaylightGlare) => 2,
         Quantity::Ugr
         | Quantity::DiscomfortIndex
+        | Quantity::OfView { .. }
         | Quantity::Declared(Property::Pulsation)
         | Quantity::NotComputed(Unmeasured::GlareRating | Unmeasured::DaylightFactor) => 1,
     }

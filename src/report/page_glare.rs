@@ -164,15 +164,16 @@ fn further(views: &[ViewpointOutcome], lang: Lang) -> String {
     for view in views {
         for index in &view.indices {
             let decimals = if index.unit == "1" && index.key.contains("GP") { 3 } else { 1 };
+            let name = words::index_name(lang, &index.key);
             let (value, interval, reason) = match &index.estimate {
                 Ok(estimate) => (
                     format!("<b>{}</b>", number::fixed(lang, estimate.value, decimals)),
                     span(lang, *estimate, decimals),
                     String::new(),
                 ),
-                Err(undefined) => ("—".into(), "—".into(), escape(&undefined.reason)),
+                Err(undefined) => ("—".into(), "—".into(), escape(&words::said(lang, &undefined.reason))),
             };
-            let notes = index.notes.iter().map(|note| escape(note)).chain([reason]);
+            let notes = index.notes.iter().map(|note| escape(&words::said(lang, note))).chain([reason]);
             let unit = if index.unit == "1" { "" } else { &index.unit };
             rows.push(vec![
                 format!(
@@ -181,7 +182,7 @@ fn further(views: &[ViewpointOutcome], lang: Lang) -> String {
                     escape(&view.light_scene)
                 ),
                 format!("{}°", number::fixed(lang, view.azimuth_deg, 1)),
-                format!("{} <span class=\"note\">{}</span>", escape(&index.key), escape(&index.name)),
+                format!("{} <span class=\"note\">{}</span>", escape(&index.key), escape(name)),
                 format!("{value} {unit}"),
                 interval,
                 format!(

@@ -6,7 +6,7 @@ use super::words::{self, Lang, Term, phrase, word};
 use super::xml::{escape, put};
 use crate::outcome::{Outcome, Requirement, Verdict};
 use crate::quantity::{Quantity, Statistic};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// The table of requirements, under the names of their rooms if there are several.
 pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> String {
@@ -115,13 +115,13 @@ pub fn remarks(lang: Lang, outcome: &Outcome, listed: &[&Requirement]) -> String
     if any(&is_maintained) {
         notes.push(words::note(lang, "maintained").into_owned());
     }
-    let keys: BTreeSet<String> = outcome
+    let quantities: BTreeMap<String, Quantity> = outcome
         .requirements
         .iter()
         .filter(|r| any(&|l| l.quantity == r.quantity))
-        .map(|r| r.quantity.key())
+        .map(|r| (r.quantity.key(), r.quantity))
         .collect();
-    let names = keys.into_iter().filter_map(|key| Quantity::parse(&key)).map(|quantity| {
+    let names = quantities.into_values().map(|quantity| {
         format!(
             "{} — {}",
             symbol(&words::symbol(lang, quantity, Statistic::Value)),

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::answer::{ANALOG, Desk, see, walk};
 use super::look::{Landing, Sight, add_emission, look};
 use super::{Prepared, highlights};
+use crate::estimate::Estimate;
 use crate::rng::{Rng, Stratified};
 use crate::sphere;
 
@@ -24,13 +25,19 @@ const AIMED: f64 = 0.25;
 /// Density of directions over the sphere, 1/sr.
 const UNIFORM: f64 = 0.25 / PI;
 
+/// Points whose replicates still scatter get so many times the rays.
+const AGAIN: u32 = 4;
+
 /// How much glances cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlanceEffort {
     /// Independent replicates: look-ups and walks are split among them.
     pub replicates: u32,
     /// Rays of each replicate.
     pub rays: u32,
+    /// Relative standard error, in the mean square over the normals, above which a point gets four times the
+    /// rays.
+    pub rough: f64,
     /// Walks for each replicate and point.
     pub walks: u32,
 }
@@ -40,6 +47,14 @@ pub struct GlanceEffort {
 pub struct Mended {
     /// A table for each replicate: `[side · channels + channel]`, cd/m².
     tables: Vec<Vec<f64>>,
+}
+
+/// The field of `prepared` as it is, for a few points that ask for no walks.
+pub fn as_stored(prepared: &Prepared, replicates: u32) -> Mended {
+    let Some(field) = &prepared.field else { return Mended { tables: Vec::new() } };
+    let table: Vec<f64> =
+        (0..field.patches().sides()).flat_map(|side| field.at(side).iter().copied()).collect();
+    Mended { tables: vec![table; replicates as usize] }
 }
 
 /// Mends the field of `prepared` by walks from what is seen at `points` on planes with these normals. A
@@ -171,37 +186,64 @@ fn look_ups(
     let count = normals.len();
     let cosines = |direction: DVec3| normals.iter().map(move |normal| normal.dot(direction).max(0.0));
     prepared.highlights.about(&prepared.emitters, point, |way| cosines(way).sum(), &mut bundles);
-    let aimed = if bundles.is_empty() { 0 } else { (AIMED * f64::from(effort.rays)).ceil() as u32 };
-    let mut found = vec![0.0; effort.replicates as usize * count];
-    for (replicate, table) in tables.iter().enumerate() {
-        let (ways, aims) = (Stratified::new(&mut rng), Stratified::new(&mut rng));
-        for ray in 0..effort.rays + aimed {
-            let direction = if ray < effort.rays {
-                // Uniform, not by the cosines: strata of two numbers pay more than they would.
-                sphere::uniform_sphere(ways.point(ray, &mut rng))
-            } else {
-                highlights::draw(&bundles, aims.point(ray - effort.rays, &mut rng))
+    let aimed = if bundles.is_empty() { 0.0 } else { AIMED };
+    let mut sums = vec![0.0; effort.replicates as usize * count];
+    // The replicates share one sequence, so that the mean has the strata of all rays; that they keep apart makes
+    // their spread, the stated error, larger than the mean's own.
+    let (ways, aims) = (Stratified::new(&mut rng), Stratified::new(&mut rng));
+    let mut done = [0; 2];
+    for rays in [effort.rays, AGAIN * effort.rays] {
+        if done[0] > 0 && spread(&sums, count) <= effort.rough {
+            break;
+        }
+        let due = [rays, (aimed * f64::from(rays)).ceil() as u32];
+        for (replicate, table) in tables.iter().enumerate() {
+            let mut sample = |direction: DVec3, rng: &mut Rng| {
+                if !in_sight(normals, direction) {
+                    return;
+                }
+                let highlighted = if aimed > 0.0 { highlights::density(&bundles, direction) } else { 0.0 };
+                let mixture = UNIFORM + aimed * highlighted;
+                look(&prepared.emitters, point, direction, ANALOG, rng, &mut sight);
+                met.copy_from_slice(&sight.met);
+                let mut luminance = 0.0;
+                for landing in &sight.landings {
+                    add_emission(prepared.scene, landing.triangle, &mut met, landing.weight);
+                    luminance += landing.weight * table[side(prepared, landing)];
+                }
+                luminance += met.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
+                let own = &mut sums[replicate * count..(replicate + 1) * count];
+                for (sum, cosine) in own.iter_mut().zip(cosines(direction)) {
+                    *sum += cosine * luminance / mixture;
+                }
             };
-            if !in_sight(normals, direction) {
-                continue;
+            // Runs of the sequence one after the other: every fourth point would lie in a quarter of the sphere.
+            let run = |which: usize| {
+                let first = done[which] * effort.replicates + replicate as u32 * (due[which] - done[which]);
+                first..first + due[which] - done[which]
+            };
+            for number in run(0) {
+                // Uniform, not by the cosines: strata of two numbers pay more than they would.
+                let direction = sphere::uniform_sphere(ways.point(number, &mut rng));
+                sample(direction, &mut rng);
             }
-            let mut mixture = f64::from(effort.rays) * UNIFORM;
-            if aimed > 0 {
-                mixture += f64::from(aimed) * highlights::density(&bundles, direction);
-            }
-            look(&prepared.emitters, point, direction, ANALOG, &mut rng, &mut sight);
-            met.copy_from_slice(&sight.met);
-            let mut luminance = 0.0;
-            for landing in &sight.landings {
-                add_emission(prepared.scene, landing.triangle, &mut met, landing.weight);
-                luminance += landing.weight * table[side(prepared, landing)];
-            }
-            luminance += met.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
-            let sums = &mut found[replicate * count..(replicate + 1) * count];
-            for (sum, cosine) in sums.iter_mut().zip(cosines(direction)) {
-                *sum += cosine * luminance / mixture;
+            for number in run(1) {
+                let direction = highlights::draw(&bundles, aims.point(number, &mut rng));
+                sample(direction, &mut rng);
             }
         }
+        done = due;
     }
-    found
+    sums.iter().map(|sum| sum / f64::from(done[0].max(1))).collect()
+}
+
+/// Relative standard error of the means over replicates (`[replicate · count + one]`), root of the mean square.
+fn spread(sums: &[f64], count: usize) -> f64 {
+    let replicates = sums.len() / count.max(1);
+    let square = |one: usize| {
+        let blocks: Vec<f64> = (0..replicates).map(|replicate| sums[replicate * count + one]).collect();
+        let estimate = Estimate::from_blocks(&blocks);
+        if estimate.value > 0.0 { (estimate.se / estimate.value).powi(2) } else { 0.0 }
+    };
+    ((0..count).map(square).sum::<f64>() / count as f64).sqrt()
 }

@@ -23,13 +23,14 @@ use glam::DVec3;
 
 use crate::emitters::{Emitters, unshadowed};
 use crate::field::LuminanceField;
+use crate::field::store::StoredField;
 use crate::query::{Demand, Ray};
 use crate::rng::Rng;
 use crate::scene::Scene;
 
 use beacons::Beacons;
 
-pub use glance::{GlanceEffort, Mended, glances, mend};
+pub use glance::{GlanceEffort, Mended, as_stored, glances, mend};
 pub use local::{LocalEffort, LocalKernel, SeenForm};
 pub use thumbnail::thumbnail;
 
@@ -228,6 +229,29 @@ pub fn prepare<'s>(
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,
         first_rows: demand.first_rows(),
+    }
+}
+
+/// A demand for nothing.
+static NOTHING: Demand = Demand { receivers: Vec::new(), rays: Vec::new(), flux: false };
+
+/// A scene with its field as it was stored, for look-ups ([`glances`]) and pictures; blocks of it answer nothing.
+pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
+    let emitters = Emitters::new(scene);
+    let effort = Effort::default();
+    Prepared {
+        scene,
+        highlights: highlights::Highlights::new(&emitters),
+        emitters,
+        demand: &NOTHING,
+        effort,
+        method: Method::Links,
+        seed: stored.made.seed,
+        field: Some(stored.field),
+        origins: None,
+        bound_m2: local::bound_m2(scene, &effort.local),
+        unshadowed: Vec::new(),
+        first_rows: Vec::new(),
     }
 }
 

@@ -14,6 +14,7 @@ mod lists;
 mod luminaires;
 mod materials;
 mod places;
+mod required;
 mod rooms;
 mod settings;
 mod shell;
@@ -54,7 +55,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
     areas::add(file, &mut drafts, &light_scenes, norm.as_ref(), context);
     viewpoints::add(file, &mut drafts, &light_scenes, context);
     glare_maps::add(file, &mut drafts, &light_scenes, context);
-    settings::requirements(file, &mut drafts, &light_scenes, context);
+    required::requirements(file, &mut drafts, &light_scenes, context);
     let declared = settings::declared(file, &drafts, context);
     let accuracy = settings::accuracy(file, context);
     cameras::add(file, &mut drafts, context);

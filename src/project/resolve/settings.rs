@@ -1,23 +1,17 @@
-//! Everything of a project that is no geometry: names, norm, light scenes, requirements,
-//! declarations, accuracy.
+//! Everything of a project that is no geometry: names, norm, light scenes, declarations,
+//! accuracy.
 
-use super::areas::light_scene_index;
-use super::draft::{Draft, room_named, room_names};
+use super::draft::{Draft, room_names};
 use crate::material::Bsdf;
 use crate::norm::{self, Standard};
 use crate::project::choices::GoalChoice;
 use crate::project::context::Context;
 use crate::project::diagnostics::{Diagnostic, suggestion};
-use crate::project::schema::{At, File, ModifiedSection, ProjectSection, RequireSection};
-use crate::project::{
-    Accuracy, Compare, CustomRequirement, CustomSubject, Declared, Goal, Info, LightScene, Modification, Norm,
-};
-use crate::quantity::{Quantity, SPELLINGS, Statistic};
+use crate::project::schema::{At, File, ModifiedSection, ProjectSection};
+use crate::project::{Accuracy, Compare, Declared, Goal, Info, LightScene, Modification, Norm};
 
 /// Languages a report can be written in.
 const LANGUAGES: &[&str] = &["en", "ru"];
-/// Keys of [`Statistic`].
-const STATISTICS: &[&str] = &["mean", "min", "max", "U0", "Ud", "mean/task", "value"];
 
 /// Head of the report.
 pub fn info(section: &ProjectSection, context: &mut Context) -> Info {
@@ -198,135 +192,6 @@ pub fn light_scenes(file: &File, drafts: &[Draft], context: &mut Context) -> Vec
         context.error(&(0..0), "[light_scenes] lists no scene", hint);
     }
     scenes
-}
-
-/// `[[require]]` → requirements of the worlds they concern.
-pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], context: &mut Context) {
-    for section in &file.requirements {
-        let span = section.span();
-        let section = section.get_ref();
-        let light_scene = light_scene_index(section.light_scene.as_ref(), light_scenes, context);
-        let quantity = Quantity::parse(section.quantity.get_ref());
-        if quantity.is_none() {
-            let hint = suggestion(section.quantity.get_ref(), SPELLINGS.iter().copied());
-            let message = format!("unknown quantity \"{}\"", section.quantity.get_ref());
-            context.error(&section.quantity.span(), message, &hint);
-        }
-        let statistic = section.statistic.as_ref().map(|key| {
-            let statistic = Statistic::parse(key.get_ref());
-            if statistic.is_none() {
-                let hint = suggestion(key.get_ref(), STATISTICS.iter().copied());
-                let message = format!("unknown statistic \"{}\"", key.get_ref());
-                context.error(&key.span(), message, &hint);
-            }
-            statistic
-        });
-        let bounds = [&section.min, &section.max];
-        for bound in bounds.into_iter().flatten() {
-            context.finite(&[*bound.get_ref()], &bound.span());
-        }
-        if bounds.into_iter().all(Option::is_none) {
-            context.missing(&span, "a requirement needs `min` or `max`", "");
-        }
-        let subject = subject(section, &span, file, drafts, context);
-        let (Some((world, subject)), Some(quantity)) = (subject, quantity) else {
-            continue;
-        };
-        if !suits(subject, quantity, &section.quantity, context) {
-            continue;
-        }
-        let statistic = statistic.unwrap_or(Some(match (subject, quantity) {
-            (CustomSubject::Viewpoint(_), _) => Statistic::Value,
-            (_, quantity) if quantity.is_single() => Statistic::Value,
-            (CustomSubject::Room(_) | CustomSubject::Area(_), _) => Statistic::Mean,
-        }));
-        let Some(statistic) = statistic else { continue };
-        let single = quantity.is_single();
-        if let (Some(key), true) = (&section.statistic, single != (statistic == Statistic::Value)) {
-            let message = format!("no statistic \"{}\" of {}", key.get_ref(), section.quantity.get_ref());
-            let hint = if single { "leave it out" } else { "there is: mean, min, max, U0, Ud, mean/task" };
-            context.error(&key.span(), message, hint);
-            continue;
-        }
-        drafts[world].requirements.push(CustomRequirement {
-            subject,
-            quantity,
-            statistic,
-            min: section.min.as_ref().map(|min| *min.get_ref()),
-            max: section.max.as_ref().map(|max| *max.get_ref()),
-            light_scene,
-        });
-    }
-}
-
-/// Whether a quantity exists where it is required: what nothing could ever decide is a mistake, not
-/// a requirement that is left unassessed.
-fn suits(subject: CustomSubject, quantity: Quantity, name: &At<String>, context: &mut Context) -> bool {
-    let single = quantity.is_single();
-    let (what, hint) = match subject {
-        CustomSubject::Room(_) if !single => ("a room", "it is measured on areas: name one, area = \"…\""),
-        CustomSubject::Area(_) if single => ("an area", "require it of a room or, UGR, of a viewpoint"),
-        CustomSubject::Viewpoint(_) if quantity != Quantity::Ugr => {
-            ("a viewpoint", "a viewpoint has UGR only")
-        }
-        CustomSubject::Room(_) | CustomSubject::Area(_) | CustomSubject::Viewpoint(_) => return true,
-    };
-    context.error(&name.span(), format!("{} is no quantity of {what}", name.get_ref()), hint);
-    false
-}
-
-fn subject(
-    section: &RequireSection,
-    span: &std::ops::Range<usize>,
-    file: &File,
-    drafts: &[Draft],
-    context: &mut Context,
-) -> Option<(usize, CustomSubject)> {
-    let (what, name, known, found) = match (&section.room, &section.area, &section.viewpoint) {
-        (Some(name), None, None) => {
-            let found =
-                room_named(drafts, name.get_ref()).map(|(world, index)| (world, CustomSubject::Room(index)));
-            ("room", name, room_names(drafts), found)
-        }
-        (None, Some(name), None) => {
-            let list = |draft: &'_ Draft| draft.areas.iter().map(|a| a.name.clone()).collect();
-            let found = find(drafts, name.get_ref(), &list);
-            let known = drafts.iter().flat_map(|draft| &draft.areas);
-            let known = known.map(|area| area.name.as_str()).collect();
-            let found = found.map(|(world, index)| (world, CustomSubject::Area(index)));
-            ("area", name, known, found)
-        }
-        (None, None, Some(name)) => {
-            let list = |draft: &'_ Draft| draft.viewpoints.iter().map(|v| v.name.clone()).collect();
-            let found = find(drafts, name.get_ref(), &list);
-            let known = drafts.iter().flat_map(|draft| &draft.viewpoints);
-            let known = known.map(|view| view.name.as_str()).collect();
-            let found = found.map(|(world, index)| (world, CustomSubject::Viewpoint(index)));
-            ("viewpoint", name, known, found)
-        }
-        _ => {
-            let message = "a requirement concerns exactly one of room, area, viewpoint";
-            context.missing(span, message, "");
-            return None;
-        }
-    };
-    // What was written but has a mistake of its own is not unknown.
-    let areas = file.areas.iter().map(|area| &area.get_ref().name);
-    let views = file.viewpoints.iter().map(|view| &view.get_ref().name);
-    let written = areas.chain(views).any(|known| known.get_ref() == name.get_ref())
-        || file.may_have_lost(what, name.get_ref());
-    if found.is_none() && !written && !drafts.is_empty() {
-        let hint = suggestion(name.get_ref(), known);
-        context.error(&name.span(), format!("no {what} \"{}\"", name.get_ref()), &hint);
-    }
-    found
-}
-
-fn find(drafts: &[Draft], name: &str, list: &dyn Fn(&Draft) -> Vec<String>) -> Option<(usize, usize)> {
-    drafts.iter().enumerate().find_map(|(world, draft)| {
-        let index = list(draft).iter().position(|known| known == name)?;
-        Some((world, index))
-    })
 }
 
 /// `[declared]`, per luminaire type or room.

@@ -2,6 +2,8 @@
 
 use super::super::ReportError;
 use super::Evaluated;
+use super::gradient::{UNIT, figures_of};
+use crate::glare::gradient::SCALE_DEG;
 
 /// The table of all images.
 ///
@@ -19,6 +21,27 @@ pub fn indices_csv(images: &[Evaluated]) -> Result<String, ReportError> {
             let convention = image.glare.convention.as_str();
             let row = [image.file.as_str(), reading.key, value.as_str(), reading.unit, reason, convention];
             writer.write_record(row)?;
+        }
+        if let Some(found) = &image.gradient {
+            let row = |name: &str, value: &str, reason: &str| {
+                let index = format!("experimental gradient of lg L, {name}");
+                [
+                    image.file.clone(),
+                    index,
+                    value.into(),
+                    UNIT.into(),
+                    reason.into(),
+                    format!("over {SCALE_DEG} deg"),
+                ]
+            };
+            match found {
+                Ok(found) => {
+                    for (name, value) in figures_of(found) {
+                        writer.write_record(row(name, &value.to_string(), ""))?;
+                    }
+                }
+                Err(undefined) => writer.write_record(row("mean", "", &undefined.reason))?,
+            }
         }
     }
     let bytes = writer.into_inner().expect("a vector takes any bytes");

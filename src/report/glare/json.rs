@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::super::ReportError;
+use super::gradient::{Experimental, object};
 use super::{Evaluated, right_and_up_deg};
 use crate::units::Undefined;
 
@@ -17,6 +18,9 @@ struct Image<'a> {
     dgp_class: Option<&'static str>,
     task: Option<Task>,
     band: Option<Band>,
+    /// Only where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    experimental_luminance_gradient: Option<Experimental<'a>>,
     convention: &'a str,
     notes: &'a [String],
 }
@@ -134,6 +138,7 @@ fn entry(image: &Evaluated) -> Image<'_> {
         dgp_class: glare.dgp_class.map(crate::glare::dgp::DgpClass::words),
         task,
         band,
+        experimental_luminance_gradient: image.gradient.as_ref().map(object),
         convention: &glare.convention,
         notes: &glare.notes,
     }

@@ -4,6 +4,7 @@
 mod card;
 mod check;
 mod csv;
+mod gradient;
 mod json;
 mod map;
 mod observed;
@@ -18,7 +19,9 @@ pub use map::{map_csv, map_svg, map_text};
 pub use observed::{compared_text, observed_csv, observed_json, observed_text, tables_text};
 pub use text::images_text;
 
+use crate::glare::gradient::Gradient;
 use crate::glare::of_image::ImageGlare;
+use crate::units::Undefined;
 
 /// Glare of one image file.
 #[derive(Clone, Debug)]
@@ -27,6 +30,8 @@ pub struct Evaluated {
     pub file: String,
     /// What was found.
     pub glare: ImageGlare,
+    /// Statistics of luminance gradients, where experimental figures are wanted.
+    pub gradient: Option<Result<Gradient, Undefined>>,
 }
 
 /// Angles of a direction (right, up, ahead) for people: to the right and upwards, degrees.

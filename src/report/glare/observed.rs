@@ -48,6 +48,9 @@ pub fn observed_text(observed: &[Observed]) -> String {
     }
     if let Some(first) = observed.first() {
         put(&mut text, format_args!("convention: {}; initial flux\n", first.convention.words()));
+        for said in &first.approximations {
+            put(&mut text, format_args!("  {said}\n"));
+        }
     }
     text
 }
@@ -182,6 +185,7 @@ fn signed(difference: f64) -> String {
 
 fn estimate(value: &Result<Interval, Undefined>, decimals: usize) -> String {
     match value {
+        Ok(ugr) if !ugr.se.is_finite() => format!("{} (no interval)", fixed(LANG, ugr.value, decimals)),
         Ok(ugr) => format!(
             "{} ({}...{})",
             fixed(LANG, ugr.value, decimals),
@@ -204,6 +208,9 @@ struct View<'a> {
     background_cd_m2: f64,
     e_v_lx: f64,
     worst: bool,
+    /// Only where values are not unbiased.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    approximations: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -242,6 +249,7 @@ pub fn observed_json(observed: &[Observed]) -> Result<String, ReportError> {
             background_cd_m2: view.background_cd_m2,
             e_v_lx: view.e_v_lx,
             worst: view.worst,
+            approximations: &view.approximations,
         })
         .collect();
     Ok(serde_json::to_string_pretty(&views)? + "\n")
@@ -258,7 +266,8 @@ pub fn observed_csv(observed: &[Observed]) -> Result<String, ReportError> {
     for view in observed {
         for value in values(view) {
             let of = |pick: fn(&Interval) -> f64| {
-                value.estimate.as_ref().map_or(String::new(), |estimate| pick(estimate).to_string())
+                let picked = value.estimate.as_ref().map(pick).filter(|number| number.is_finite());
+                picked.map_or(String::new(), |number| number.to_string())
             };
             writer.write_record([
                 view.viewpoint.clone(),

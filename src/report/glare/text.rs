@@ -35,6 +35,9 @@ fn block(image: &Evaluated) -> String {
     }
     sources(image, &mut text);
     zones(image, &mut text);
+    if let Some(gradient) = &image.gradient {
+        text.push_str(&super::gradient::text(gradient));
+    }
     for note in &glare.notes {
         put(&mut text, format_args!("  note: {}\n", printable(note)));
     }

@@ -3,12 +3,14 @@
 
 mod faults;
 mod findings;
+mod indices;
 mod lamp;
 mod rules;
 mod sentences;
 mod table;
 
 pub use findings::found;
+pub use indices::index_name;
 pub use lamp::lamp_word;
 pub use rules::rule_words;
 pub use sentences::said;
@@ -126,6 +128,7 @@ pub fn quantity(lang: Lang, quantity: Quantity) -> String {
             Quantity::Intensity => Term::Intensity,
             Quantity::ColourRendering => Term::ColourRendering,
             Quantity::DiscomfortIndex => Term::DiscomfortIndex,
+            Quantity::OfView { key, .. } => return format!("{} {key}", index_name(lang, key)),
             Quantity::Declared(Property::Pulsation) => Term::Pulsation,
             Quantity::Declared(Property::PstLm) => Term::PstLm,
             Quantity::Declared(Property::Svm) => Term::Svm,
@@ -173,6 +176,7 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Quantity::Hemispherical => word(lang, Term::IndexHemispherical),
         Quantity::Spherical => word(lang, Term::IndexSpherical),
         Quantity::Declared(Property::Pulsation) => word(lang, Term::IndexPulsation),
+        Quantity::OfView { key, .. } => key.split_once('_').map_or("", |(_, index)| index),
         Quantity::Luminance { .. }
         | Quantity::Modelling
         | Quantity::Ugr
@@ -216,6 +220,7 @@ fn letter(quantity: Quantity, lang: Lang) -> String {
         Quantity::ColourRendering => "R",
         Quantity::Luminance { .. } => "L",
         Quantity::DiscomfortIndex => "M",
+        Quantity::OfView { key, .. } => key.split_once('_').map_or(key, |(letter, _)| letter),
         Quantity::Declared(Property::Pulsation) => word(lang, Term::LetterPulsation),
         Quantity::Declared(property) => property.key(),
         Quantity::NotComputed(quantity) => quantity.key(),
@@ -240,6 +245,7 @@ fn direction(quantity: Quantity) -> Option<String> {
         | Quantity::Intensity
         | Quantity::ColourRendering
         | Quantity::DiscomfortIndex
+        | Quantity::OfView { .. }
         | Quantity::Declared(_)
         | Quantity::NotComputed(_) => None,
     }

@@ -249,6 +249,20 @@ impl Patches {
         (centre / before, facing / before)
     }
 
+    /// Distance from `centre` to the farthest corner of a patch, m.
+    pub fn radius_m(&self, mesh: &Mesh, side: usize, centre: DVec3) -> f64 {
+        let (first, last, _) = self.ranges[side / 2];
+        let members = &self.members[first as usize..last as usize];
+        let corners = members.iter().flat_map(|member| {
+            let [a, b, c] = mesh.corners(member.triangle as usize);
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|corner| {
+                let [s, t] = member.part.at(corner);
+                a + (b - a) * s + (c - a) * t
+            })
+        });
+        corners.map(|corner| corner.distance(centre)).fold(0.0, f64::max)
+    }
+
     /// Places by which the evenness of a patch is judged: the centres of its quarters, or of up to
     /// `most` of the triangles that it joins, each with its share of the area.
     pub fn samples(&self, mesh: &Mesh, patch: usize, most: usize) -> Vec<(Place, f64)> {

@@ -52,6 +52,8 @@ pub(super) struct Landing {
     pub barycentric: [f64; 2],
     /// Whether the triangle's front was met.
     pub front: bool,
+    /// Whether the last ray came here without mirrors and panes.
+    pub straight: bool,
 }
 
 impl Landing {
@@ -104,7 +106,7 @@ fn follow(
     let mut reflections = 0;
     let mut owned = true;
     let mut bodies = BodiesMet::default();
-    for _ in 0..MOST_BOUNCES {
+    for bounce in 0..MOST_BOUNCES {
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if !owned {
@@ -127,6 +129,7 @@ fn follow(
                 triangle: hit.triangle,
                 barycentric: hit.barycentric,
                 front: hit.front,
+                straight: bounce == 0,
             });
         };
         let choice = rng.uniform();

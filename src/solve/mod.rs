@@ -1,6 +1,7 @@
 //! The solver: `prepare` builds the frozen field once, `answer` gives one independent, unbiased
 //! replicate of everything a [`Demand`] asks. It knows no norm, no observer and no report.
 
+mod aims;
 mod answer;
 mod chains;
 mod covered;
@@ -16,6 +17,7 @@ mod path;
 pub mod picture;
 mod prepare;
 mod refine;
+mod sweep;
 mod thumbnail;
 
 use glam::DVec3;

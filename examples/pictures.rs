@@ -117,8 +117,8 @@ struct Compared {
     percent: Vec<f64>,
     /// Standard errors of the reference, percent.
     noise: Vec<f64>,
-    /// Mean error of the whole picture, percent.
-    mean: f64,
+    /// Mean error of the whole picture, and the reference's standard error of that, percent.
+    mean: [f64; 2],
 }
 
 fn compare(exposure: &Exposure, project: &Project, view: &View, size: [usize; 2]) -> Compared {
@@ -137,7 +137,7 @@ fn compare(exposure: &Exposure, project: &Project, view: &View, size: [usize; 2]
         }
     }
     let n = REPLICATES as f64;
-    let (mut percent, mut noise, mut totals) = (Vec::new(), Vec::new(), [0.0; 2]);
+    let (mut percent, mut noise, mut totals) = (Vec::new(), Vec::new(), [0.0; 3]);
     for (index, [sum, squares]) in sums.into_iter().enumerate() {
         let (row, column) = (index / columns, index % columns);
         let pixel = |k: usize| (EDGE * row + k / EDGE) * size[0] + EDGE * column + k % EDGE;
@@ -145,10 +145,12 @@ fn compare(exposure: &Exposure, project: &Project, view: &View, size: [usize; 2]
             (0..EDGE * EDGE).map(|k| image.luminance_cd_m2[pixel(k)]).sum::<f64>() / (EDGE * EDGE) as f64;
         let truth = sum / n;
         percent.push(100.0 * (found / truth - 1.0));
-        noise.push(100.0 * ((squares / n - truth * truth).max(0.0) / (n - 1.0)).sqrt() / truth);
-        totals = [totals[0] + found, totals[1] + truth];
+        let variance = (squares / n - truth * truth).max(0.0) / (n - 1.0);
+        noise.push(100.0 * variance.sqrt() / truth);
+        totals = [totals[0] + found, totals[1] + truth, totals[2] + variance];
     }
-    Compared { percent, noise, mean: 100.0 * (totals[0] / totals[1] - 1.0) }
+    let mean = [100.0 * (totals[0] / totals[1] - 1.0), 100.0 * totals[2].sqrt() / totals[1]];
+    Compared { percent, noise, mean }
 }
 
 /// The value below which a share of the sizes lies.
@@ -168,7 +170,7 @@ fn blocks() -> Result<String, Box<dyn Error>> {
     let size = [300, 200];
     let mut csv = String::from("scene,view,column,row,error_percent,reference_se_percent\n");
     let mut table = format!(
-        "## Luminance of blocks of {EDGE} × {EDGE} pixels\n\nPictures of {} × {} pixels without `--blocks` against {REPLICATES} unbiased replicates of every block (values in [blocks.csv](blocks.csv)). The reference's own noise is in the errors.\n\n![errors](blocks.svg)\n\n| scene | view | picture as a whole | mean of the blocks' errors | half of the blocks within | 95 of 100 within | reference's standard error: half, 95 of 100 within |\n|---|---|---|---|---|---|---|\n",
+        "## Luminance of blocks of {EDGE} × {EDGE} pixels\n\nPictures of {} × {} pixels without `--blocks` against {REPLICATES} unbiased replicates of every block (values in [blocks.csv](blocks.csv)). The reference's own noise is in the errors; of the picture as a whole its standard error is given.\n\n![errors](blocks.svg)\n\n| scene | view | picture as a whole | mean of the blocks' errors | half of the blocks within | 95 of 100 within | reference's standard error: half, 95 of 100 within |\n|---|---|---|---|---|---|---|\n",
         size[0], size[1]
     );
     let mut series = Vec::new();
@@ -182,7 +184,7 @@ fn blocks() -> Result<String, Box<dyn Error>> {
         let projection = Projection::Perspective { horizontal_deg: width, vertical_deg: tall };
         let view = View::new(projection, DVec3::from_array(eye), DVec3::from_array(direction), DVec3::Z)?;
         let exposure = expose(&project.worlds[0].scene, 1);
-        let Compared { percent, noise, mean } = compare(&exposure, project, &view, size);
+        let Compared { percent, noise, mean: [mean, mean_se] } = compare(&exposure, project, &view, size);
         for (index, (percent, noise)) in percent.iter().zip(&noise).enumerate() {
             let columns = size[0] / EDGE;
             writeln!(csv, "{name},{title},{},{},{percent},{noise}", index % columns, index / columns)?;
@@ -190,7 +192,7 @@ fn blocks() -> Result<String, Box<dyn Error>> {
         let of_blocks = percent.iter().sum::<f64>() / percent.len() as f64;
         writeln!(
             table,
-            "| {name} | {title} | {mean:+.2} % | {of_blocks:+.2} % | {:.2} % | {:.2} % | {:.2} %, {:.2} % |",
+            "| {name} | {title} | {mean:+.2} ± {mean_se:.2} % | {of_blocks:+.2} % | {:.2} % | {:.2} % | {:.2} %, {:.2} % |",
             quantile(&percent, 0.5),
             quantile(&percent, 0.95),
             quantile(&noise, 0.5),

@@ -61,6 +61,8 @@ pub struct Source {
     pub radius_m: f64,
     opening: Opening,
     dim: f64,
+    /// Flat, without light at γ ≥ 90°: what lies behind its plane gets none.
+    one_sided: bool,
 }
 
 /// Light that would arrive at a point from one point of an opening if nothing stood between.
@@ -81,6 +83,13 @@ impl Source {
     /// All light leaves from one point.
     pub fn is_point(&self) -> bool {
         !(self.radius_m > 0.0)
+    }
+
+    /// Whether a point lies where no point of the opening sends light to, by a cheap test that only ever errs
+    /// towards no.
+    #[inline]
+    pub fn is_behind(&self, point: DVec3) -> bool {
+        self.one_sided && self.world_from_luminaire.z_axis.dot(point - self.position) > 0.0
     }
 
     /// A point in the luminaire frame.
@@ -122,6 +131,7 @@ impl<'s> Emitters<'s> {
                 },
                 opening: luminaire.kind.opening,
                 dim: luminaire.dim,
+                one_sided: luminaire.kind.opening.is_level() && luminaire.kind.distribution.is_dark_above(),
             })
             .collect();
         for (index, mirror) in mirrors.iter().enumerate() {
@@ -187,6 +197,9 @@ impl<'s> Emitters<'s> {
         u: [f64; 2],
         wanted: impl FnOnce(DVec3) -> bool,
     ) -> Option<Arrival> {
+        if source.is_behind(point) {
+            return None;
+        }
         let shine = source.opening.shine(source.place(point), u)?;
         self.arrival_from(source, point, shine, wanted)
     }

@@ -65,12 +65,11 @@ impl Stratified {
 
     /// Point `index` (< 65 536) of the sequence; `rng` fills the bits below the sequence's 24.
     pub fn point<const D: usize>(&self, index: u32, rng: &mut Rng) -> [f64; D] {
-        let mut point = [0.0; D];
-        for (dimension, coordinate) in point.iter_mut().enumerate() {
-            let coarse = f64::from(sobol_burley::sample(index, dimension as u32, self.seed));
-            *coordinate = coarse + rng.uniform() * (1.0 / f64::from(1u32 << 24));
-        }
-        point
+        const { assert!(D <= 4, "one set of Sobol dimensions") };
+        let coarse = sobol_burley::sample_4d(index, 0, self.seed);
+        std::array::from_fn(|dimension| {
+            f64::from(coarse[dimension]) + rng.uniform() * (1.0 / f64::from(1u32 << 24))
+        })
     }
 }
 

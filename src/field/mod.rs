@@ -2,6 +2,7 @@
 //! material reflects or passes on, one number per channel (initial flux). It is an approximation,
 //! frozen after it is built; the solver corrects it without bias, so it decides only the noise.
 
+mod neighbours;
 mod patches;
 mod smooth;
 pub mod store;
@@ -9,7 +10,7 @@ pub mod store;
 use glam::DVec3;
 
 pub use patches::Patches;
-pub use smooth::Smooth;
+pub use smooth::{Misfit, Smooth};
 
 /// Luminance of every patch side for every channel, cd/m².
 #[derive(Clone, Debug)]

@@ -261,6 +261,11 @@ impl Patches {
         })
     }
 
+    /// Distance from `centre` to the farthest corner of a patch, m.
+    pub fn radius_m(&self, mesh: &Mesh, side: usize, centre: DVec3) -> f64 {
+        self.outlines(mesh, side / 2).flatten().map(|corner| corner.distance(centre)).fold(0.0, f64::max)
+    }
+
     /// Places by which the evenness of a patch is judged: the centres of its quarters, or of up to
     /// `most` of the triangles that it joins, each with its share of the area.
     pub fn samples(&self, mesh: &Mesh, patch: usize, most: usize) -> Vec<(Place, f64)> {

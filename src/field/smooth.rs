@@ -1,6 +1,7 @@
 //! Patch values as a smooth function of place, for pictures: patch edges must not show. Every patch
 //! side carries a value and a gradient fitted to its neighbours; a place gets the mean of what the
-//! patches around it predict, with weights that fall to nothing at a fixed distance.
+//! patches around it predict, with weights that fall to nothing at a distance in proportion to the
+//! patch. Where small patches lie beside large ones, the small ones know better.
 //!
 //! Neighbours face alike, lie in nearly the same plane and see each other, so light does not leak
 //! through walls. Where a patch is partly covered its stored value is a mean over the covered part
@@ -10,22 +11,22 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Patches;
+use super::neighbours::{Place, REACH, neighbours};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::Tracer;
 
-/// Reach of a patch, in edges of a patch of the mean size.
-const REACH: f64 = 1.7;
-/// Neighbours' normals agree to this cosine.
-const ALIKE: f64 = 0.9;
-/// They lie this near to one plane, in units of the reach.
-const FLAT: f64 = 0.2;
 /// Keeps the fit of a gradient from following noise where neighbours are few.
 const STIFFNESS: f64 = 0.2;
+/// The same where a patch is compared with its neighbours: next to nothing, for slopes must not count.
+const HARDLY_STIFF: f64 = 1e-3;
+/// Edge of half a square, in the distance of its farthest corner.
+const ACROSS: f64 = 0.94;
+/// Neighbours that a patch is compared with, at least.
+const FEWEST: usize = 6;
 
 /// A smooth function on all patch sides.
 #[derive(Clone, Debug)]
 pub struct Smooth {
-    reach_m: f64,
     sides: Vec<Side>,
     /// Neighbours of all sides, one after the other; each side is its own first neighbour.
     neighbours: Vec<u32>,
@@ -34,14 +35,23 @@ pub struct Smooth {
 #[derive(Clone, Copy, Debug)]
 struct Side {
     centre: DVec3,
-    /// A place of it from which others are looked for.
-    clear: DVec3,
     facing: DVec3,
-    weight: f64,
+    reach_m: f64,
+    /// Root of its area, at most its edge, m.
+    weight_m: f64,
     value: f64,
     gradient: DVec3,
     first: u32,
     last: u32,
+}
+
+/// How far a side's value is from what its neighbours predict.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// Value minus prediction.
+    pub difference: f64,
+    /// Variance of the difference.
+    pub variance: f64,
 }
 
 impl Smooth {
@@ -54,34 +64,39 @@ impl Smooth {
         patches: &Patches,
         values: &[f64],
         kind: impl Fn(usize) -> Option<u32> + Sync,
-        part: impl Fn(usize) -> Option<[DVec3; 2]>,
+        part: impl Fn(usize) -> Option<[DVec3; 2]> + Sync,
     ) -> Self {
         let count = patches.sides();
         let total_m2: f64 = (0..count).step_by(2).map(|side| patches.area_m2(side)).sum();
-        let edge_m = (2.0 * total_m2 / count.max(1) as f64).sqrt();
-        let reach_m = REACH * edge_m;
-        let mut sides: Vec<Side> = (0..count)
+        let mean_m = (2.0 * total_m2 / count.max(1) as f64).sqrt();
+        let places: Vec<Place> = (0..count)
+            .into_par_iter()
             .map(|side| {
                 let (middle, front) = patches.centre(mesh, side);
                 let [centre, clear] = part(side).unwrap_or([middle; 2]);
                 let facing = front.normalize_or_zero() * if side.is_multiple_of(2) { 1.0 } else { -1.0 };
-                let weight = patches.area_m2(side).sqrt().min(edge_m);
-                let value = values[side];
-                Side { centre, clear, facing, weight, value, gradient: DVec3::ZERO, first: 0, last: 0 }
+                // Triangles that are joined may lie farther apart than their area tells.
+                let extent_m = (ACROSS * patches.radius_m(mesh, side, middle)).min(mean_m);
+                let edge_m = patches.area_m2(side).sqrt().max(extent_m).max(f64::MIN_POSITIVE);
+                Place { centre, clear, facing, edge_m, kind: kind(side) }
             })
             .collect();
-        let cells = Cells::new(&sides, 2.0 * reach_m);
-        let near: Vec<Vec<u32>> = (0..count)
-            .into_par_iter()
-            .map(|side| neighbours(side, &sides, &cells, reach_m, edge_m, tracer, &kind))
-            .collect();
-        let mut neighbours = Vec::new();
-        for (side, near) in near.into_iter().enumerate() {
-            sides[side].first = neighbours.len() as u32;
-            neighbours.extend(near);
-            sides[side].last = neighbours.len() as u32;
+        let near = neighbours(&places, tracer);
+        let mut smooth = Self { sides: Vec::with_capacity(count), neighbours: Vec::new() };
+        for (side, (place, near)) in places.iter().zip(near).enumerate() {
+            let first = smooth.neighbours.len() as u32;
+            smooth.neighbours.extend(near);
+            smooth.sides.push(Side {
+                centre: place.centre,
+                facing: place.facing,
+                reach_m: REACH * place.edge_m,
+                weight_m: patches.area_m2(side).sqrt().min(place.edge_m),
+                value: values[side],
+                gradient: DVec3::ZERO,
+                first,
+                last: smooth.neighbours.len() as u32,
+            });
         }
-        let mut smooth = Self { reach_m, sides, neighbours };
         smooth.fit_all();
         smooth
     }
@@ -112,14 +127,16 @@ impl Smooth {
     /// The value at a place of a patch side.
     pub fn at(&self, side: usize, place: DVec3) -> f64 {
         // The patch itself always counts a little, so that there is always something to go by.
-        let (mut sum, mut weights) = (self.sides[side].value * 1e-6, 1e-6);
-        let reach_squared = self.reach_m * self.reach_m;
+        let own = &self.sides[side];
+        let least = 1e-6 * own.weight_m / (own.reach_m * own.reach_m);
+        let (mut sum, mut weights) = (own.value * least, least);
         for &other in self.around(side) {
             let other = &self.sides[other as usize];
+            let reach_squared = other.reach_m * other.reach_m;
             let away = place - other.centre;
             let left = 1.0 - away.length_squared() / reach_squared;
             if left > 0.0 {
-                let weight = other.weight * left * left;
+                let weight = other.weight_m / (other.reach_m * reach_squared) * left * left;
                 sum += weight * (other.value + other.gradient.dot(away));
                 weights += weight;
             }
@@ -132,15 +149,8 @@ impl Smooth {
         let own = &self.sides[side];
         let frame = crate::sphere::frame(own.facing);
         let (mut xx, mut xy, mut yy, mut xv, mut yv, mut total) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        for &other in self.around(side) {
-            let other = &self.sides[other as usize];
-            let away = other.centre - own.centre;
-            let left = 1.0 - away.length_squared() / (4.0 * self.reach_m * self.reach_m);
-            if !(left > 0.0) {
-                continue;
-            }
-            let weight = other.weight * left * left;
-            let (x, y, v) = (away.dot(frame.x_axis), away.dot(frame.y_axis), other.value - own.value);
+        for (other, x, y, weight) in self.seen_from(side) {
+            let v = self.sides[other].value - own.value;
             xx += weight * x * x;
             xy += weight * x * y;
             yy += weight * y * y;
@@ -148,7 +158,7 @@ impl Smooth {
             yv += weight * y * v;
             total += weight;
         }
-        let stiff = STIFFNESS * total * self.reach_m * self.reach_m * 0.25;
+        let stiff = STIFFNESS * total * own.reach_m * own.reach_m * 0.25;
         let (xx, yy) = (xx + stiff, yy + stiff);
         let determinant = xx * yy - xy * xy;
         if !(determinant > 0.0) {
@@ -158,77 +168,50 @@ impl Smooth {
         let y = (yv * xx - xv * xy) / determinant;
         frame.x_axis * x + frame.y_axis * y
     }
-}
 
-fn neighbours(
-    side: usize,
-    sides: &[Side],
-    cells: &Cells,
-    reach_m: f64,
-    edge_m: f64,
-    tracer: &Tracer,
-    kind: &(impl Fn(usize) -> Option<u32> + Sync),
-) -> Vec<u32> {
-    let own = &sides[side];
-    let mut near = vec![side as u32];
-    let Some(own_kind) = kind(side) else { return near };
-    let furthest_m = reach_m + edge_m;
-    for other_index in cells.around(own.centre) {
-        let other = &sides[other_index as usize];
-        let away = other.centre - own.centre;
-        let distance_m = away.length();
-        let alike = own.facing.dot(other.facing) > ALIKE
-            && own.facing.dot(away).abs() < FLAT * reach_m
-            && other.facing.dot(away).abs() < FLAT * reach_m;
-        if other_index as usize == side
-            || distance_m > furthest_m
-            || !alike
-            || kind(other_index as usize) != Some(own_kind)
-        {
-            continue;
-        }
-        // Seen from a little above the surfaces: small unevenness does not part them.
-        let lift_m = 0.1 * edge_m;
-        let (from, to) = (own.clear + own.facing * lift_m, other.clear + other.facing * lift_m);
-        let towards = to - from;
-        let span_m = towards.length();
-        let blocked = span_m > 0.0
-            && tracer.closest(from, towards / span_m, &[]).is_some_and(|hit| hit.distance_m < span_m);
-        if !blocked {
-            near.push(other_index);
-        }
-    }
-    near
-}
-
-/// Sides sorted into cells of space.
-struct Cells {
-    size_m: f64,
-    sorted: Vec<([i64; 3], u32)>,
-}
-
-impl Cells {
-    fn new(sides: &[Side], size_m: f64) -> Self {
-        let mut sorted: Vec<([i64; 3], u32)> = Vec::with_capacity(sides.len());
-        for (index, side) in sides.iter().enumerate() {
-            sorted.push((Self::cell(side.centre, size_m), index as u32));
-        }
-        sorted.sort_unstable();
-        Self { size_m, sorted }
-    }
-
-    fn cell(place: DVec3, size_m: f64) -> [i64; 3] {
-        (place / size_m).to_array().map(|x| x.floor() as i64)
-    }
-
-    /// Everything in the cell of a place and the 26 around it, in a fixed order.
-    fn around(&self, place: DVec3) -> impl Iterator<Item = u32> + '_ {
-        let [x, y, z] = Self::cell(place, self.size_m);
-        (0..27i64).flat_map(move |k| {
-            let cell = [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1];
-            let first = self.sorted.partition_point(|(other, _)| *other < cell);
-            self.sorted[first..].iter().take_while(move |(other, _)| *other == cell).map(|(_, side)| *side)
+    /// Neighbours of a side, itself first, with their place in its plane and their weight.
+    fn seen_from(&self, side: usize) -> impl Iterator<Item = (usize, f64, f64, f64)> {
+        let own = &self.sides[side];
+        let frame = crate::sphere::frame(own.facing);
+        self.around(side).iter().filter_map(move |&number| {
+            let other = &self.sides[number as usize];
+            let away = other.centre - own.centre;
+            let left = 1.0 - away.length_squared() / (4.0 * own.reach_m * own.reach_m);
+            let weight = other.weight_m.min(own.reach_m / REACH) * left * left;
+            (left > 0.0).then(|| (number as usize, away.dot(frame.x_axis), away.dot(frame.y_axis), weight))
         })
+    }
+
+    /// Compares a side with the affine function through its neighbours, itself left out; `variance` are
+    /// those of the values. `None` where there are too few neighbours to tell.
+    pub fn misfit(&self, side: usize, variance: &[f64]) -> Option<Misfit> {
+        let others = || self.seen_from(side).skip(1);
+        let own = &self.sides[side];
+        let scale_m = own.reach_m;
+        let mut m = glam::DMat3::ZERO;
+        let mut count = 0;
+        for (_, x, y, weight) in others() {
+            let row = DVec3::new(1.0, x / scale_m, y / scale_m);
+            m += glam::DMat3::from_cols(row * row.x, row * row.y, row * row.z) * weight;
+            count += 1;
+        }
+        if count < FEWEST {
+            return None;
+        }
+        let stiff = HARDLY_STIFF * m.x_axis.x;
+        m.y_axis.y += stiff;
+        m.z_axis.z += stiff;
+        let solved = m.inverse() * DVec3::X;
+        if !solved.is_finite() {
+            return None;
+        }
+        let (mut difference, mut scatter) = (own.value, variance[side]);
+        for (number, x, y, weight) in others() {
+            let share = weight * solved.dot(DVec3::new(1.0, x / scale_m, y / scale_m));
+            difference -= share * self.sides[number].value;
+            scatter += share * share * variance[number];
+        }
+        Some(Misfit { difference, variance: scatter })
     }
 }
 
@@ -253,12 +236,21 @@ mod tests {
     }
 
     fn smooth(mesh: &Mesh, value: impl Fn(DVec3) -> f64) -> (Smooth, Patches) {
+        smooth_on(mesh, |_| (), value)
+    }
+
+    fn smooth_on(
+        mesh: &Mesh,
+        split: impl Fn(&mut Patches),
+        value: impl Fn(DVec3) -> f64,
+    ) -> (Smooth, Patches) {
         let materials = [crate::material::Material {
             name: "a".into(),
             bsdf: crate::material::Bsdf::Lambert { reflectance: 0.5 },
         }];
         let tracer = Tracer::build(mesh, &materials);
-        let patches = Patches::new(mesh, 0.02, |_| true);
+        let mut patches = Patches::new(mesh, 0.02, |_| true);
+        split(&mut patches);
         let values: Vec<f64> = (0..patches.sides()).map(|side| value(patches.centre(mesh, side).0)).collect();
         (Smooth::new(mesh, &tracer, &patches, &values, |_| Some(0), |_| None), patches)
     }
@@ -295,6 +287,75 @@ mod tests {
         }
         // The function itself changes by at most 2e-3 per step; a patch is 0.14 m wide.
         assert!(largest < 6e-3, "a jump of {largest}");
+    }
+
+    /// Catches: a coarse patch that speaks where fine ones lie, a slope bent where sizes meet, a jump there.
+    #[test]
+    fn patches_of_unlike_size_join() {
+        let mesh = floor(false);
+        let split = |patches: &mut Patches| {
+            let near = |patches: &Patches, side: usize| patches.centre(&mesh, side).0.x < 1.0;
+            for _ in 0..2 {
+                for patch in (0..patches.len()).filter(|&patch| near(patches, 2 * patch)).collect::<Vec<_>>()
+                {
+                    patches.split(&mesh, patch);
+                }
+            }
+        };
+        let sloping = smooth_on(&mesh, split, |p| 10.0 + 3.0 * p.x - 2.0 * p.y);
+        for (x, y) in [(0.5, 1.1), (0.9, 1.3), (1.0, 1.5), (1.1, 2.2), (3.3, 2.2)] {
+            let expected = 10.0 + 3.0 * x - 2.0 * y;
+            assert!((at(&mesh, &sloping, x, y) - expected).abs() < 0.02, "{x} {y}");
+        }
+        // A wave that only the fine patches resolve (their edges are 0.035 m, the others 0.14 m).
+        let wave = |p: DVec3| (12.0 * p.x).sin();
+        let fine = smooth_on(&mesh, split, wave);
+        let largest = |from: f64, to: f64| {
+            let at = |k: i32| from + (to - from) * f64::from(k) / 400.0;
+            let off = |k: i32| (along(&mesh, &fine, at(k)) - (12.0 * at(k)).sin()).abs();
+            (0..400).map(off).fold(0.0, f64::max)
+        };
+        assert!(largest(0.2, 0.7) < 0.03, "{}", largest(0.2, 0.7));
+        assert!(largest(1.5, 3.0) > 0.2, "the coarse ones should fail: {}", largest(1.5, 3.0));
+        let step = |k: i32| along(&mesh, &fine, 0.6 + 0.0005 * f64::from(k));
+        let jump = (0..1600).map(|k| (step(k + 1) - step(k)).abs()).fold(0.0, f64::max);
+        // The wave itself changes by 6e-3 a step.
+        assert!(jump < 0.02, "a jump of {jump}");
+    }
+
+    fn along(mesh: &Mesh, function: &(Smooth, Patches), x: f64) -> f64 {
+        at(mesh, function, x, 1.4721)
+    }
+
+    /// Catches: a misfit that counts slopes or leaves bends out, or a wrong variance of it.
+    #[test]
+    fn bends_do_not_fit_and_slopes_do() {
+        let mesh = floor(false);
+        let misfits = |value: fn(DVec3) -> f64| -> Vec<f64> {
+            let (smooth, patches) = smooth(&mesh, value);
+            let variance = vec![1.0; patches.sides()];
+            let inner = |side: usize| {
+                let p = patches.centre(&mesh, side).0;
+                p.x > 0.5 && p.x < 3.5 && p.y > 0.5 && p.y < 2.5
+            };
+            (0..patches.sides())
+                .filter(|&side| inner(side))
+                .map(|side| {
+                    let misfit = smooth.misfit(side, &variance).expect("there are neighbours");
+                    // Its own and a share of the others, of which some ten count.
+                    assert!((1.02..1.5).contains(&misfit.variance), "{}", misfit.variance);
+                    misfit.difference
+                })
+                .collect()
+        };
+        let most = |all: &[f64]| all.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+        assert!(most(&misfits(|p| 10.0 + 3.0 * p.x - 2.0 * p.y)) < 0.01);
+        // z = x²: below its neighbours by the mean square of their distance along x.
+        let bent = misfits(|p| p.x * p.x);
+        assert!(bent.iter().all(|d| (-0.06..-0.005).contains(d)), "{bent:?}");
+        let (smooth, patches) = smooth(&mesh, |_| 1.0);
+        let lone = (0..patches.sides()).filter(|&side| smooth.around(side).len() <= FEWEST);
+        lone.for_each(|side| assert!(smooth.misfit(side, &vec![0.0; patches.sides()]).is_none()));
     }
 
     /// Catches: light that leaks under a wall.

@@ -34,7 +34,7 @@ pub struct StoredField {
 pub struct Made {
     /// Seed of its links.
     pub seed: u64,
-    /// Links per patch side.
+    /// Most links of a patch side.
     pub links: u32,
     /// Patch area on large surfaces, m².
     pub patch_m2: f64,

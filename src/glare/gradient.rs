@@ -40,9 +40,7 @@ pub struct Gradient {
 }
 
 /// |∇ lg L| of every pixel in front of the eye:
-///
-///     g = √(g_u² + g_v²),   g_u = lg( L(ω + δu/2) / L(ω − δu/2) ) / δ
-///
+/// g = √(g_u² + g_v²), g_u = lg( L(ω + δu/2) / L(ω − δu/2) ) / δ,
 /// δ the scale, u and v unit tangents of the sphere of directions, perpendicular to each other and to ω; L between
 /// pixels is bilinear. A pixel with a place that is dark or outside of the image has none.
 ///

@@ -71,6 +71,15 @@ impl IntensityDistribution {
         }
     }
 
+    /// Whether there is no light at γ ≥ 90°.
+    pub fn is_dark_above(&self) -> bool {
+        match &self.shape {
+            Shape::Lambert => true,
+            Shape::Isotropic => false,
+            Shape::Table(table) => table.is_dark_from(90.0),
+        }
+    }
+
     /// I in cd at an azimuth (any turn) and γ of the luminaire frame, degrees.
     pub fn intensity_at(&self, azimuth_deg: f64, gamma_deg: f64) -> f64 {
         match &self.shape {

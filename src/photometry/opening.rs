@@ -180,6 +180,11 @@ impl Opening {
         }
     }
 
+    /// Whether all of it lies in the plane z = 0 of the luminaire, and has a size.
+    pub fn is_level(&self) -> bool {
+        matches!(self, Self::Rect { .. } | Self::Disc { .. } | Self::Ellipse { .. }) && self.pieces() == 0
+    }
+
     /// Number of smooth pieces of a body, of which [`Opening::shine_of_piece`] knows each; 0 if flat.
     pub fn pieces(&self) -> usize {
         self.body().map_or(0, |body| body.count)

@@ -49,6 +49,16 @@ impl Table {
         here + s * (next - here)
     }
 
+    /// Whether all is 0 from an angle on.
+    pub(super) fn is_dark_from(&self, gamma_deg: f64) -> bool {
+        let gammas = &self.gammas.values;
+        let next = gammas.partition_point(|gamma| *gamma < gamma_deg);
+        // Between two values light fades towards the second.
+        let straddles = gammas.get(next).is_some_and(|gamma| *gamma > gamma_deg);
+        let first = if straddles { next.saturating_sub(1) } else { next };
+        self.cd.chunks(gammas.len()).all(|plane| plane[first..].iter().all(|cd| !(*cd > 0.0)))
+    }
+
     pub(super) fn zonal_flux(&self, from_deg: f64, to_deg: f64) -> f64 {
         let columns = self.gammas.values.len();
         let plane_integral = |plane: usize| -> f64 {
@@ -131,6 +141,19 @@ pub(super) fn ends(values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Catches: light above the horizon that is taken for dark, at a value, between two, or in one plane only.
+    #[test]
+    fn dark_is_what_has_no_light_from_there_on() {
+        let dark = |gammas: &[f64], cd: &[f64]| {
+            Table::new(vec![0.0, 360.0], gammas.to_vec(), cd.to_vec(), false).is_dark_from(90.0)
+        };
+        assert!(dark(&[0.0, 45.0, 90.0, 180.0], &[9.0, 9.0, 0.0, 0.0, 9.0, 9.0, 0.0, 0.0]));
+        assert!(dark(&[0.0, 45.0, 85.0], &[9.0, 9.0, 1.0, 9.0, 9.0, 1.0]));
+        assert!(!dark(&[0.0, 45.0, 90.0, 180.0], &[9.0, 9.0, 0.0, 0.0, 9.0, 9.0, 1.0, 0.0]));
+        assert!(!dark(&[0.0, 80.0, 100.0, 180.0], &[9.0, 9.0, 0.0, 0.0, 9.0, 9.0, 0.0, 0.0]));
+        assert!(dark(&[0.0, 80.0, 100.0, 180.0], &[9.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0]));
+    }
 
     /// Catches: a uniform-step shortcut that disagrees with the search at nodes and edges.
     #[test]

@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use super::beacons::{Aims, Beacons, Branch};
+use super::beacons::{Beacons, Branch, Chances};
 use super::highlights::{self, Bundle};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
 use super::{PARTS, Part, Prepared, Sheet, lifted, turn};
@@ -47,9 +47,9 @@ pub(super) struct Desk {
     /// Highlights about the receiver or the current place.
     bundles: Vec<Bundle>,
     /// Chances of bright patches at the receiver …
-    aims: Aims,
+    chances: Chances,
     /// … and at the current place of a walk.
-    aims_here: Aims,
+    chances_here: Chances,
 }
 
 impl Desk {
@@ -61,8 +61,8 @@ impl Desk {
             pending: Vec::new(),
             onward: Vec::new(),
             bundles: Vec::new(),
-            aims: Aims::default(),
-            aims_here: Aims::default(),
+            chances: Chances::default(),
+            chances_here: Chances::default(),
         }
     }
 }
@@ -123,12 +123,12 @@ fn answer_receiver(
     let sequence = Stratified::new(rng);
     let (emitters, patches) = (&prepared.emitters, field(prepared).patches());
     let mut bundles = std::mem::take(&mut desk.bundles);
-    let mut aims = std::mem::take(&mut desk.aims);
+    let mut chances = std::mem::take(&mut desk.chances);
     let response = |direction| kernels.iter().map(|kernel| kernel.response(direction)).sum();
     prepared.highlights.about(emitters, origin, response, &mut bundles);
-    prepared.beacons.about(origin, response, kernels.len(), &mut aims);
+    prepared.beacons.about(origin, response, kernels.len(), &mut chances);
     let guided = if bundles.is_empty() { 0 } else { effort.highlights };
-    let aimed = if aims.is_empty() { 0 } else { effort.beacons };
+    let aimed = if chances.is_empty() { 0 } else { effort.beacons };
     let aimed_walks = aimed.min(walks);
     let guides = if guided > 0 { Stratified::new(rng) } else { sequence };
     let marks = if aimed > 0 { Stratified::new(rng) } else { sequence };
@@ -141,7 +141,7 @@ fn answer_receiver(
             highlights::draw(&bundles, guides.point(sample - gather, rng))
         } else {
             let u = marks.point(sample - gather - guided, rng);
-            let (direction, side) = prepared.beacons.draw(emitters, patches, origin, &aims, u);
+            let (direction, side) = prepared.beacons.draw(emitters, patches, origin, &chances, u);
             target = Some(side);
             direction
         };
@@ -156,7 +156,7 @@ fn answer_receiver(
         if target.is_some_and(|side| !Beacons::came_to(patches, &desk.sight, side)) {
             continue;
         }
-        let by_aim = prepared.beacons.density(patches, origin, &aims, &desk.sight);
+        let by_aim = prepared.beacons.density(patches, origin, &chances, &desk.sight);
         mixture += f64::from(aimed) * by_aim;
         // Walks are of the first rays of those that follow the responses, and of those to bright patches.
         let first = if target.is_some() { sample - gather - guided < aimed_walks } else { sample < walks };
@@ -177,7 +177,7 @@ fn answer_receiver(
         }
     }
     desk.bundles = bundles;
-    desk.aims = aims;
+    desk.chances = chances;
 }
 
 /// Direct light = unshadowed light (exact) − what is kept off (sampled): no noise where nothing shades.
@@ -358,9 +358,9 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         *residual += here.weight * direct;
     }
     let mut bundles = std::mem::take(&mut desk.bundles);
-    let mut aims = std::mem::take(&mut desk.aims_here);
+    let mut chances = std::mem::take(&mut desk.chances_here);
     bundles.clear();
-    aims.clear();
+    chances.clear();
     // Density of the directions that reflection and transmission draw, times π.
     let scattered = |direction: DVec3| {
         let cos = here.normal.dot(direction);
@@ -369,11 +369,11 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
     if !(transmittance > 0.0) {
         prepared.highlights.about(emitters, here.origin(scene, true), scattered, &mut bundles);
     }
-    prepared.beacons.about(here.point, scattered, 1, &mut aims);
+    prepared.beacons.about(here.point, scattered, 1, &mut chances);
     let patches = field(prepared).patches();
     let looks = effort.looks.max(1);
     let guided = u32::from(!bundles.is_empty());
-    let aimed = u32::from(!aims.is_empty());
+    let aimed = u32::from(!chances.is_empty());
     desk.onward.clear();
     for number in 0..looks + guided + aimed {
         let mut target = None;
@@ -385,7 +385,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
             highlights::draw(&bundles, rng.uniforms())
         } else {
             let u = rng.uniforms();
-            let (direction, side) = prepared.beacons.draw(emitters, patches, here.point, &aims, u);
+            let (direction, side) = prepared.beacons.draw(emitters, patches, here.point, &chances, u);
             target = Some(side);
             direction
         };
@@ -402,7 +402,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         if target.is_some_and(|side| !Beacons::came_to(patches, &desk.sight, side)) {
             continue;
         }
-        let by_aim = prepared.beacons.density(patches, origin, &aims, &desk.sight);
+        let by_aim = prepared.beacons.density(patches, origin, &chances, &desk.sight);
         if guided + aimed > 0 {
             mixture += by_aim;
             share *= cosine / mixture;
@@ -433,7 +433,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         }
     }
     desk.bundles = bundles;
-    desk.aims_here = aims;
+    desk.chances_here = chances;
     if !desk.onward.is_empty() && rng.uniform() < albedo {
         let weighted = |next: &Landing| Landing { weight: here.weight * next.weight, ..*next };
         desk.pending.extend(desk.onward.iter().map(weighted));

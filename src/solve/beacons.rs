@@ -3,15 +3,15 @@
 //! dark hall. Points drawn on them are *added* to the rays, and every ray is weighted by the sum of all
 //! densities, so a wrong choice costs noise and nothing else.
 //!
-//! A ray drawn to a beacon counts if it arrives there straight, through panes at most; what it sees
-//! otherwise is left to the other rays, whose weight is then that of their own density alone.
+//! A ray drawn to a beacon counts if it arrives there straight, through panes at most; what it sees otherwise is
+//! left to the other rays, which then have the weight of their own density alone.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
 use super::covered::place;
-use super::look::{Sight, add_emission};
+use super::look::{Landing, Sight, Way, add_emission};
 use crate::emitters::Emitters;
 use crate::field::Patches;
 use crate::scene::Scene;
@@ -75,7 +75,7 @@ pub(super) struct Branch {
 
 /// The chance of each beacon to be aimed at from one place.
 #[derive(Debug, Default)]
-pub(super) struct Aims {
+pub(super) struct Chances {
     /// Probability summed up to each beacon; empty where nothing is aimed at.
     up_to: Vec<f64>,
 }
@@ -85,29 +85,20 @@ impl Beacons {
     /// without what it emits itself, channels summed.
     pub(super) fn new(scene: &Scene, patches: &Patches, stored: impl Fn(usize) -> f64) -> Self {
         let mut emitted = vec![0.0; scene.channels.len()];
-        let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
-        let all: Vec<(f64, f64)> = (0..patches.sides())
+        let all: Vec<f64> = (0..patches.sides())
             .map(|side| {
                 emitted.fill(0.0);
                 add_emission(scene, patches.triangle(side), &mut emitted, 1.0);
-                let luminance = stored(side) + emitted.iter().sum::<f64>();
-                let area_m2 = patches.area_m2(side);
-                area += area_m2;
-                sum += area_m2 * luminance;
-                squares += area_m2 * luminance * luminance;
-                (luminance, area_m2)
+                stored(side) + emitted.iter().sum::<f64>()
             })
             .collect();
-        let mean = sum / area;
-        if !(squares * area > UNEVEN * sum * sum) {
-            return Self::default();
-        }
+        let Some(mean) = mean_of_uneven(patches, |side| all[side]) else { return Self::default() };
         let mut bright: Vec<Bright> = (0..all.len())
-            .filter(|&side| all[side].0 > BRIGHT * mean && all[side].1 > 0.0)
+            .filter(|&side| all[side] > BRIGHT * mean && patches.area_m2(side) > 0.0)
             .map(|side| {
                 let (middle, front) = patches.centre(&scene.mesh, side);
                 let normal = if side.is_multiple_of(2) { front } else { -front };
-                let (luminance, area_m2) = all[side];
+                let (luminance, area_m2) = (all[side], patches.area_m2(side));
                 Bright { side, middle, normal, area_m2, luminance, beacon: 0, up_to: 0.0 }
             })
             .collect();
@@ -124,21 +115,16 @@ impl Beacons {
         Self { list, bright, place, mean }
     }
 
-    /// Whether there are none.
-    pub(super) fn is_empty(&self) -> bool {
-        self.list.is_empty()
-    }
-
-    /// Fills `aims` with the chances of beacons as seen from `origin`; with none where rays that follow
+    /// Fills `chances` with the chances of beacons as seen from `origin`; with none where rays that follow
     /// `response` find their light well enough. The response is the sum of `kernels`, each of integral π.
     pub(super) fn about(
         &self,
         origin: DVec3,
         response: impl Fn(DVec3) -> f64,
         kernels: usize,
-        aims: &mut Aims,
+        chances: &mut Chances,
     ) {
-        aims.clear();
+        chances.clear();
         if self.list.is_empty() {
             return;
         }
@@ -158,16 +144,16 @@ impl Beacons {
                 total += light;
                 squares += light * beacon.luminance;
             }
-            aims.up_to.push(total);
+            chances.up_to.push(total);
         }
         // Rays by a response of integral nπ have density R/nπ: their mean square is ∫ nπ R L².
         let whole = PI * kernels as f64;
         let mean = total + whole * self.mean;
         if !(whole * squares > RARE * mean * mean) {
-            aims.clear();
+            chances.clear();
             return;
         }
-        for up_to in &mut aims.up_to {
+        for up_to in &mut chances.up_to {
             *up_to /= total;
         }
     }
@@ -178,15 +164,15 @@ impl Beacons {
         emitters: &Emitters,
         patches: &Patches,
         origin: DVec3,
-        aims: &Aims,
+        chances: &Chances,
         [choice, u, v, w]: [f64; 4],
     ) -> (DVec3, usize) {
-        let chosen = aims.up_to.partition_point(|up_to| *up_to <= choice).min(self.list.len() - 1);
-        let before = if chosen == 0 { 0.0 } else { aims.up_to[chosen - 1] };
+        let chosen = chances.up_to.partition_point(|up_to| *up_to <= choice).min(self.list.len() - 1);
+        let before = if chosen == 0 { 0.0 } else { chances.up_to[chosen - 1] };
         let Beacon { first, last, .. } = self.list[chosen];
         let members = &self.bright[first..last];
         // What is left of the choice chooses the patch.
-        let rest = (choice - before) / (aims.up_to[chosen] - before) * members[members.len() - 1].up_to;
+        let rest = (choice - before) / (chances.up_to[chosen] - before) * members[members.len() - 1].up_to;
         let member = members.partition_point(|bright| bright.up_to <= rest).min(members.len() - 1);
         let side = members[member].side;
         let point = place(emitters, patches, side, [u, v, w]).point;
@@ -195,10 +181,10 @@ impl Beacons {
 
     /// Density of [`Beacons::draw`] of what a look from `origin` met, 1/sr: q L/Σ(L A) · d²/cos θ with q the
     /// chance of the beacon; 0 if the look did not come to one straight.
-    pub(super) fn density(&self, patches: &Patches, origin: DVec3, aims: &Aims, sight: &Sight) -> f64 {
-        let Some(met) = self.met(patches, sight).filter(|_| !aims.is_empty()) else { return 0.0 };
+    pub(super) fn density(&self, patches: &Patches, origin: DVec3, chances: &Chances, sight: &Sight) -> f64 {
+        let Some(met) = self.met(patches, sight).filter(|_| !chances.is_empty()) else { return 0.0 };
         let (landing, beacon) = (&sight.landings[0], met.beacon);
-        let chance = aims.up_to[beacon] - if beacon == 0 { 0.0 } else { aims.up_to[beacon - 1] };
+        let chance = chances.up_to[beacon] - if beacon == 0 { 0.0 } else { chances.up_to[beacon - 1] };
         let squared = (landing.point - origin).length_squared();
         let facing = landing.normal.dot(landing.to_eye);
         let whole = self.bright[self.list[beacon].last - 1].up_to;
@@ -222,18 +208,32 @@ impl Beacons {
 
     /// The bright patch to which a look came straight.
     fn met(&self, patches: &Patches, sight: &Sight) -> Option<&Bright> {
-        let landing = sight.landings.first().filter(|_| sight.straight && !self.list.is_empty())?;
+        let landing =
+            sight.landings.first().filter(|landing| landing.way != Way::Turned && !self.list.is_empty())?;
         let side = patches.side_at(landing.triangle, landing.barycentric, landing.front);
         self.bright.get(self.place[side] as usize)
     }
 
     /// Whether a look came straight to this patch side.
     pub(super) fn came_to(patches: &Patches, sight: &Sight, side: usize) -> bool {
-        sight.straight
-            && sight.landings.first().is_some_and(|landing| {
-                patches.side_at(landing.triangle, landing.barycentric, landing.front) == side
-            })
+        let there = |landing: &Landing| {
+            landing.way != Way::Turned
+                && patches.side_at(landing.triangle, landing.barycentric, landing.front) == side
+        };
+        sight.landings.first().is_some_and(there)
     }
+}
+
+/// Mean luminance, if the luminance is so uneven that few patches make most of the light.
+pub(super) fn mean_of_uneven(patches: &Patches, luminance: impl Fn(usize) -> f64) -> Option<f64> {
+    let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for side in 0..patches.sides() {
+        let (area_m2, luminance) = (patches.area_m2(side), luminance(side));
+        area += area_m2;
+        sum += area_m2 * luminance;
+        squares += area_m2 * luminance * luminance;
+    }
+    (squares * area > UNEVEN * sum * sum).then_some(sum / area)
 }
 
 /// Sorts bright patches into groups of one facing that lie together: the group with the most light spread
@@ -299,8 +299,8 @@ impl Beacon {
     }
 }
 
-impl Aims {
-    /// Aims at nothing.
+impl Chances {
+    /// Chances at nothing.
     pub(super) fn clear(&mut self) {
         self.up_to.clear();
     }
@@ -354,9 +354,9 @@ mod tests {
         let patches = Patches::of_scene(&scene, 1e-3);
         let beacons = Beacons::new(&scene, &patches, |_| 0.0);
         let origin = DVec3::new(0.2, 0.1, 0.3);
-        let mut aims = Aims::default();
-        beacons.about(origin, |direction| direction.z.max(0.0), 1, &mut aims);
-        assert!(!aims.is_empty() && beacons.list.len() > 1);
+        let mut chances = Chances::default();
+        beacons.about(origin, |direction| direction.z.max(0.0), 1, &mut chances);
+        assert!(!chances.is_empty() && beacons.list.len() > 1);
         let (mut rng, mut sight) = (Rng::new(1, 2, 3), Sight::new(scene.channels.len()));
         let weight = |direction: DVec3| direction * direction.x.max(0.0);
         // Moments by draws, and by their density along uniform directions about the tiles.
@@ -365,10 +365,10 @@ mod tests {
         for _ in 0..n {
             let direction = sphere::uniform_sphere(rng.uniforms());
             look(&emitters, origin, direction, 1.0, &mut rng, &mut sight);
-            let density = beacons.density(&patches, origin, &aims, &sight) * 4.0 * PI / f64::from(n);
+            let density = beacons.density(&patches, origin, &chances, &sight) * 4.0 * PI / f64::from(n);
             whole += density;
             by_density += weight(direction) * density;
-            let (direction, side) = beacons.draw(&emitters, &patches, origin, &aims, rng.uniforms());
+            let (direction, side) = beacons.draw(&emitters, &patches, origin, &chances, rng.uniforms());
             look(&emitters, origin, direction, 1.0, &mut rng, &mut sight);
             assert!(Beacons::came_to(&patches, &sight, side), "all is in sight");
             by_draws += weight(direction) / f64::from(n);

@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use super::look::{Landing, Sight, look};
+use super::look::{Landing, Sight, Way, look};
 use crate::emitters::Emitters;
 use crate::field::Patches;
 use crate::rng::{Rng, Stratified};
@@ -44,16 +44,16 @@ pub(super) struct Cavities<'a> {
     pub covers: Vec<Cover>,
 }
 
-impl<'a> Cavities<'a> {
-    /// Probes all patch sides.
-    pub(super) fn new(emitters: &'a Emitters<'a>, patches: &'a Patches, lit: &'a [bool], seed: u64) -> Self {
-        let mut cavities = Self { emitters, patches, lit, covers: Vec::new() };
-        let covers = (0..patches.sides())
+impl Cavities<'_> {
+    /// Probes all patch sides but those that are `known`, drawing from a stream of a seed.
+    pub(super) fn probe(&mut self, known: &[Option<Cover>], [seed, stream]: [u64; 2]) {
+        self.covers = (0..self.patches.sides())
             .into_par_iter()
-            .map(|side| cavities.cover(side, &mut Rng::new(seed, 0, ITEM + side as u64)))
+            .map(|side| {
+                let probed = || self.cover(side, &mut Rng::new(seed, stream, ITEM + side as u64));
+                known.get(side).copied().flatten().unwrap_or_else(probed)
+            })
             .collect();
-        cavities.covers = covers;
-        cavities
     }
 
     fn cover(&self, side: usize, rng: &mut Rng) -> Cover {
@@ -150,6 +150,7 @@ pub(super) fn place(emitters: &Emitters, patches: &Patches, side: usize, u: [f64
         triangle: patches.triangle(side),
         barycentric: [0.0; 2],
         front,
+        way: Way::Turned,
     }
 }
 
@@ -232,7 +233,8 @@ mod tests {
                     (0..4).any(|k| cavities.sees_light(&at, &mut Rng::new(1, 0, (4 * side + k) as u64)))
                 })
                 .collect();
-            let cavities = Cavities::new(&emitters, &patches, &lit, 1);
+            let mut cavities = Cavities { emitters: &emitters, patches: &patches, lit: &lit, covers: vec![] };
+            cavities.probe(&[], [1, 0]);
             let (mut rng, mut sight) = (Rng::new(1, 2, 3), Sight::new(1));
             let (mut wrong, mut tried, mut covered, mut hovered) = (0, 0, 0, 0);
             for side in 0..patches.sides() {

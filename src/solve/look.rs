@@ -22,8 +22,6 @@ pub(super) struct Sight {
     pub met: Vec<f64>,
     /// Where the ray arrived; more than one only behind glossy surfaces.
     pub landings: Vec<Landing>,
-    /// Whether the first landing lies on the ray itself, mirrors not met.
-    pub straight: bool,
     /// Rays traced so far.
     pub counts: Counts,
     /// Luminaires considered at one place: source, luminance, arrival, side.
@@ -35,6 +33,17 @@ impl Sight {
     pub fn new(channels: usize) -> Self {
         Self { met: vec![0.0; channels], ..Self::default() }
     }
+}
+
+/// How a ray came to a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// Nothing was between.
+    Clear,
+    /// Straight, through panes.
+    Panes,
+    /// By mirrors, or not along a ray.
+    Turned,
 }
 
 /// A place with a diffuse part that a ray arrived at.
@@ -54,6 +63,8 @@ pub(super) struct Landing {
     pub barycentric: [f64; 2],
     /// Whether the triangle's front was met.
     pub front: bool,
+    /// How the ray came there.
+    pub way: Way,
 }
 
 impl Landing {
@@ -99,14 +110,14 @@ fn follow(
     direction: DVec3,
     weight: f64,
     rng: &mut Rng,
-    Sight { met, landings, straight, counts, .. }: &mut Sight,
+    Sight { met, counts, .. }: &mut Sight,
 ) -> Option<Landing> {
     let scene = emitters.scene;
     let (mut origin, mut direction) = (origin, direction);
     let mut reflections = 0;
     let mut owned = true;
     let mut bodies = BodiesMet::default();
-    for _ in 0..MOST_BOUNCES {
+    for bounce in 0..MOST_BOUNCES {
         counts.rays += 1;
         let hit = scene.tracer.closest(origin, direction, &[]);
         if !owned {
@@ -121,9 +132,6 @@ fn follow(
         let normal = if hit.front { front } else { -front };
         let cos = -direction.dot(normal);
         let Some((reflected, passed)) = scene.bsdf(hit.triangle).specular(cos) else {
-            if landings.is_empty() {
-                *straight = reflections == 0;
-            }
             return Some(Landing {
                 weight,
                 to_eye: -direction,
@@ -132,6 +140,11 @@ fn follow(
                 triangle: hit.triangle,
                 barycentric: hit.barycentric,
                 front: hit.front,
+                way: match (bounce, reflections) {
+                    (0, _) => Way::Clear,
+                    (_, 0) => Way::Panes,
+                    _ => Way::Turned,
+                },
             });
         };
         let choice = rng.uniform();

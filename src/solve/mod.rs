@@ -1,6 +1,7 @@
 //! The solver: `prepare` builds the frozen field once, `answer` gives one independent, unbiased
 //! replicate of everything a [`Demand`] asks. It knows no norm, no observer and no report.
 
+mod aims;
 mod answer;
 mod beacons;
 mod chains;
@@ -17,6 +18,7 @@ mod path;
 pub mod picture;
 mod prepare;
 mod refine;
+mod sweep;
 mod thumbnail;
 
 use glam::DVec3;
@@ -248,6 +250,7 @@ pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
         method: Method::Links,
         seed: stored.made.seed,
         field: Some(stored.field),
+        beacons: Beacons::default(),
         origins: None,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed: Vec::new(),

@@ -6,22 +6,23 @@
 //! is seen to the interpolated indirect part of the field, and samples glossy lobes. [`replicate`] is unbiased: independent
 //! blocks of the solver's own answer.
 
+mod bends;
 mod direct;
+mod even;
+mod exposure;
 mod lobes;
 mod openings;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+pub use self::exposure::{Exposure, expose, from_store};
 use self::openings::Beam;
-use super::highlights::Highlights;
-use super::look::Landing;
-use super::{Counts, Effort, PARTS, Prepared, answer, prepare};
+use super::look::{Landing, Way};
+use super::{Counts, PARTS, Prepared, answer};
 use crate::emitters::Emitters;
-use crate::field::store::{Made, StoredField};
 use crate::field::{LuminanceField, Smooth};
 use crate::image::{LuminanceImage, View};
-use crate::material::Bsdf;
 use crate::query::Ray;
 use crate::rng::Rng;
 use crate::scene::{BodiesMet, Channel, Scene};
@@ -34,11 +35,6 @@ pub const FAINTEST: f64 = 1e-4;
 pub const MOST_BOUNCES: u32 = 24;
 /// Stream of what pictures draw at random; blocks use 1, 2, …, and the field stream 0.
 const STREAM: u64 = u64::MAX - 1;
-/// Patches of the field on large surfaces, and its links: more than a sheet needs, for here the field
-/// is what is seen.
-const PATCHES: f64 = 6000.0;
-const LINKS: u32 = 256;
-
 /// What a picture shows of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
@@ -46,13 +42,6 @@ pub enum Detail {
     Stored,
     /// Direct light computed at every pixel and the interpolated indirect light.
     Exact,
-}
-
-/// A field made for pictures, for every channel.
-#[derive(Debug)]
-pub struct Exposure<'s> {
-    emitters: Emitters<'s>,
-    stored: StoredField,
 }
 
 /// A field under one light scene.
@@ -71,77 +60,6 @@ pub struct Picture<'e> {
     seed: u64,
 }
 
-/// Builds the field for pictures of a scene.
-pub fn expose(scene: &Scene, seed: u64) -> Exposure<'_> {
-    let emitters = Emitters::new(scene);
-    let patch_m2 = (scene.scattering_m2() / PATCHES).max(1e-12);
-    // Smoothing takes patches of about one size.
-    let effort = Effort { patch_m2: Some(patch_m2), adaptive: false, links: LINKS, ..Effort::default() };
-    let highlights = Highlights::new(&emitters);
-    let prepare::Parts { field, direct, reached } = prepare::parts(&emitters, &highlights, &effort, seed);
-    let made = Made { seed, links: LINKS, patch_m2 };
-    Exposure { emitters, stored: StoredField { made, field, direct, reached } }
-}
-
-/// Pictures of a scene from its field as it was stored.
-pub fn from_store(scene: &Scene, stored: StoredField) -> Exposure<'_> {
-    Exposure { emitters: Emitters::new(scene), stored }
-}
-
-impl Exposure<'_> {
-    /// The field, to be stored.
-    pub fn stored(&self) -> &StoredField {
-        &self.stored
-    }
-
-    /// [`Exposure::stored`], kept.
-    pub fn into_stored(self) -> StoredField {
-        self.stored
-    }
-
-    /// The field with a factor for each channel.
-    pub fn picture(&self, weights: &[f64]) -> Picture<'_> {
-        let scene = self.emitters.scene;
-        let weighted = |values: &[f64]| values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
-        let patches = self.stored.field.patches();
-        let stored: Vec<f64> =
-            (0..patches.sides()).map(|side| weighted(self.stored.field.at(side))).collect();
-        let albedo = |side: usize| {
-            let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
-            reflectance + transmittance
-        };
-        let per_albedo =
-            |side: usize, value: f64| if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 };
-        let indirect: Vec<f64> = (0..patches.sides())
-            .map(|side| per_albedo(side, stored[side] - weighted(self.stored.direct.at(side))))
-            .collect();
-        // Per unit of reflectance opaque surfaces differ by place only, opals by material too.
-        let kind = |side: usize| match scene.bsdf(patches.triangle(side)) {
-            _ if !(albedo(side) > 0.0) || self.stored.reached[side].is_dark() => None,
-            Bsdf::Opal { .. } => {
-                let surface = scene.mesh.triangles[patches.triangle(side) as usize].surface;
-                Some(1 + scene.mesh.surfaces[surface as usize].material as u32)
-            }
-            _ => Some(0),
-        };
-        let part = |side: usize| self.stored.reached[side].middle();
-        let smooth = Smooth::new(&scene.mesh, &scene.tracer, patches, &indirect, kind, part);
-        let whole = scene.has_lobes().then(|| {
-            let values: Vec<f64> = (0..stored.len()).map(|side| per_albedo(side, stored[side])).collect();
-            smooth.with(&values)
-        });
-        Picture {
-            emitters: &self.emitters,
-            field: &self.stored.field,
-            weights: weights.to_vec(),
-            stored,
-            indirect: smooth,
-            whole,
-            seed: self.stored.made.seed,
-        }
-    }
-}
-
 /// What a picture without interval approximates or leaves out, one sentence each.
 pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
     let mut all = vec![match detail {
@@ -153,7 +71,7 @@ pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
         }
     }];
     if detail == Detail::Exact {
-        all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and eight in them; unshadowed light may be off by 0.4 %.");
+        all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and from two to eight in them, by its part of the light; unshadowed light may be off by 0.4 %.");
     }
     all.push("Every pixel is looked at in its centre only, but for the openings of luminaires: edges of surfaces are not smoothed, and what is narrower than a pixel may be missed.");
     if scene.surfaces().any(|bsdf| bsdf.specular(1.0).is_some()) {
@@ -162,7 +80,7 @@ pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
     if scene.has_lobes() {
         all.push(match detail {
             Detail::Stored => "What glossy surfaces reflect in their lobe is left out: their highlights are missing. Without --preview they are there.",
-            Detail::Exact => "What glossy surfaces reflect in their lobe is sampled by four rays a pixel, which find surfaces as the field has them, shadows blurred; pictures of the example hall with its polished floor are 1 % too dark. The noise of these rays alone is given for every pixel; it is no interval.",
+            Detail::Exact => "What glossy surfaces reflect in their lobe is sampled by four rays a pixel, which find surfaces as the field has them, shadows blurred. The noise of these rays alone is given for every pixel; it is no interval.",
         });
     }
     all.into_iter().map(str::to_owned).collect()
@@ -317,6 +235,7 @@ impl Sight {
                 front: hit.front,
                 to_eye: -direction,
                 weight: 1.0,
+                way: if path.bounces == 0 { Way::Clear } else { Way::Turned },
             };
             self.places.push(Seen { landing, share: path.share });
             return;

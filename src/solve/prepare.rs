@@ -8,11 +8,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Effort;
-use super::beacons::{Aims, Beacons};
+use super::aims::{AIMED, Aims};
+use super::beacons::mean_of_uneven;
 use super::covered::{Cavities, Cover, place};
 use super::highlights::{self, Highlights};
-use super::look::{Landing, Sight, add_direct, add_emission, look};
+use super::look::{Landing, Sight, Way, add_direct, add_emission, look};
 use super::refine::refine;
+use super::sweep::{Collected, sweep, variances};
 use crate::emitters::Emitters;
 use crate::field::{LuminanceField, Patches, Reached};
 use crate::rng::{Rng, Stratified};
@@ -23,17 +25,11 @@ const PATCHES: f64 = 1500.0;
 /// Samples of direct light per patch side.
 const DIRECT_SAMPLES: u32 = 4;
 /// One link in this many is doubled by a ray about the highlights that may be seen from its place.
-const AIMED: u32 = 4;
-/// One link in this many is joined by one to a bright patch, where a few of them make most of the light.
-const MARKED: u32 = 2;
-/// Sweeps end when the stored flux changes by less than this share …
-const SETTLED: f64 = 1e-3;
-/// … or after this many; the rest is left to the residual.
-const MOST_SWEEPS: u32 = 100;
-/// Every so many sweeps the field is scaled to balance: at a reflectance near 1 a sweep brings all
-/// places nearer by a thousandth of what they still lack.
-const BALANCED: u32 = 8;
-
+const GLINTS: u32 = 4;
+/// Dark sides of what is shown have one in this many links.
+const SPARED: u32 = 32;
+/// Places that are tried on partly covered sides of what is shown.
+const SPOTS: u32 = 32;
 /// Direct light of one patch side, and where its random numbers go on.
 struct FirstLight {
     /// Luminance that luminaires and their images make here, per channel.
@@ -43,30 +39,6 @@ struct FirstLight {
     rng: Rng,
 }
 
-/// What one patch side receives.
-struct Collected {
-    /// The part of `first` that luminaires and their images make here.
-    direct: Vec<f64>,
-    /// Luminance that direct light and emitting surfaces make here, per channel.
-    first: Vec<f64>,
-    /// Patch sides where its links end.
-    links: Vec<u32>,
-    /// Share of each link that counts; empty if all count wholly.
-    shares: Vec<f64>,
-    /// Number of places from which the links start.
-    places: u32,
-    /// The part of it that light reaches.
-    reached: Reached,
-}
-
-impl Collected {
-    /// Where the links end, and the share of each that counts.
-    fn ends(&self) -> impl Iterator<Item = (usize, f64)> {
-        let share = |index: usize| self.shares.get(index).copied().unwrap_or(1.0);
-        self.links.iter().enumerate().map(move |(index, &link)| (link as usize, share(index)))
-    }
-}
-
 /// A field, and what pictures want to know of it.
 pub(super) struct Parts {
     pub field: LuminanceField,
@@ -74,6 +46,10 @@ pub(super) struct Parts {
     pub direct: LuminanceField,
     /// Per patch side.
     pub reached: Vec<Reached>,
+    /// How much of it is covered, per patch side.
+    pub covers: Vec<Cover>,
+    /// Of the sum over channels, from the scatter of links, per patch side; for a trial only.
+    pub variances: Vec<f64>,
 }
 
 /// Builds the field from stream 0 of `seed`.
@@ -83,33 +59,98 @@ pub(super) fn field(
     effort: &Effort,
     seed: u64,
 ) -> LuminanceField {
-    parts(emitters, highlights, effort, seed).field
+    let patches = mesh(emitters, effort);
+    let making = Making {
+        purpose: Purpose::Control,
+        links: effort.links,
+        links_of: &[],
+        seed,
+        stream: 0,
+        covers: &[],
+    };
+    parts(emitters, highlights, patches, &making).field
 }
 
-/// [`field`] with its parts.
-pub(super) fn parts(emitters: &Emitters, highlights: &Highlights, effort: &Effort, seed: u64) -> Parts {
+/// What a field is built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To take noise from answers that are right whatever it holds.
+    Control,
+    /// To find where patches should be split, with the variances of what it holds.
+    Trial,
+    /// To be shown.
+    Shown,
+}
+
+impl Purpose {
+    /// What is shown has links that are aimed at bright places too, spares those of dark sides, and tries
+    /// fewer places of partly covered ones.
+    fn is_seen(self) -> bool {
+        match self {
+            Self::Control => false,
+            Self::Trial | Self::Shown => true,
+        }
+    }
+}
+
+/// How a field is built.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Making<'a> {
+    pub purpose: Purpose,
+    /// Links of a patch side …
+    pub links: u32,
+    /// … if it is not told otherwise here.
+    pub links_of: &'a [u32],
+    pub seed: u64,
+    pub stream: u64,
+    /// Covers of patch sides that are known before; what is missing is probed.
+    pub covers: &'a [Option<Cover>],
+}
+
+/// The mesh on which a field is built: even, or split where direct light varies.
+pub(super) fn mesh(emitters: &Emitters, effort: &Effort) -> Patches {
     let scene = emitters.scene;
     let patch_m2 = effort.patch_m2.unwrap_or_else(|| scene.scattering_m2() / PATCHES).max(1e-12);
     let mut patches = Patches::of_scene(scene, patch_m2);
     if effort.adaptive {
         refine(emitters, &mut patches);
     }
+    patches
+}
+
+/// [`field`] with its parts, on patches that are given.
+pub(super) fn parts(
+    emitters: &Emitters,
+    highlights: &Highlights,
+    patches: Patches,
+    making: &Making,
+) -> Parts {
+    let scene = emitters.scene;
+    let Making { purpose, seed, stream, .. } = *making;
     let channels = scene.channels.len();
     let (lights, lit): (Vec<FirstLight>, Vec<bool>) = (0..patches.sides())
         .into_par_iter()
         .map(|side| {
-            let light = first_light(emitters, &patches, side, Rng::new(seed, 0, side as u64));
+            let rng = Rng::new(seed, stream, side as u64);
+            let light = match making.covers.get(side) {
+                Some(Some(Cover::Dark)) => FirstLight { direct: vec![0.0; channels], lit: false, rng },
+                _ => first_light(emitters, &patches, side, rng),
+            };
             let lit = light.lit;
             (light, lit)
         })
         .unzip();
-    let cavities = Cavities::new(emitters, &patches, &lit, seed);
-    let beacons = Beacons::new(scene, &patches, |side| lights[side].direct.iter().sum());
-    let collected: Vec<Collected> = lights
-        .into_par_iter()
-        .enumerate()
-        .map(|(side, light)| collect(&cavities, highlights, &beacons, effort, side, light))
-        .collect();
+    let sent =
+        |side: usize| lights[side].direct.iter().sum::<f64>() + scene.bsdf(patches.triangle(side)).emitted();
+    // Links of answers' fields are aimed where few patches make most of the light.
+    let aimed = purpose.is_seen() || mean_of_uneven(&patches, sent).is_some();
+    let aims = if aimed { Aims::new(&patches, sent) } else { None };
+    let mut cavities = Cavities { emitters, patches: &patches, lit: &lit, covers: Vec::new() };
+    cavities.probe(making.covers, [seed, stream]);
+    let links = Links { cavities: &cavities, highlights, aims: aims.as_ref(), making };
+    let collected: Vec<Collected> =
+        lights.into_par_iter().enumerate().map(|(side, light)| collect(&links, side, light)).collect();
+    let covers = cavities.covers;
     let mut field = LuminanceField::dark(patches, channels);
     let mut direct = field.clone();
     for (side, entry) in collected.iter().enumerate() {
@@ -117,7 +158,12 @@ pub(super) fn parts(emitters: &Emitters, highlights: &Highlights, effort: &Effor
         direct.at_mut(side).copy_from_slice(&entry.direct);
     }
     sweep(emitters, &mut field, &collected);
-    Parts { field, direct, reached: collected.into_iter().map(|entry| entry.reached).collect() }
+    let variances = match purpose {
+        Purpose::Trial => variances(emitters, &field, &collected),
+        Purpose::Control | Purpose::Shown => Vec::new(),
+    };
+    let reached = collected.into_iter().map(|entry| entry.reached).collect();
+    Parts { field, direct, reached, covers, variances }
 }
 
 fn first_light(emitters: &Emitters, patches: &Patches, side: usize, mut rng: Rng) -> FirstLight {
@@ -140,14 +186,34 @@ fn first_light(emitters: &Emitters, patches: &Patches, side: usize, mut rng: Rng
     FirstLight { direct, lit, rng }
 }
 
-fn collect(
-    cavities: &Cavities,
-    highlights: &Highlights,
-    beacons: &Beacons,
-    effort: &Effort,
-    side: usize,
-    FirstLight { mut direct, mut rng, .. }: FirstLight,
-) -> Collected {
+/// What links of all patch sides have in common.
+struct Links<'a> {
+    cavities: &'a Cavities<'a>,
+    highlights: &'a Highlights,
+    aims: Option<&'a Aims>,
+    making: &'a Making<'a>,
+}
+
+impl Links<'_> {
+    /// Number of links of a side. What nothing shows needs none but for those who think otherwise.
+    fn count(&self, side: usize) -> u32 {
+        let making = self.making;
+        let wanted = making.links_of.get(side).copied().unwrap_or(making.links);
+        let is_spared = making.purpose.is_seen() && self.cavities.covers[side] == Cover::Dark;
+        if is_spared { wanted / SPARED } else { wanted }
+    }
+
+    /// Places of a partly covered side that light reaches, out of [`SPOTS`].
+    fn spots(&self, side: usize, places: Stratified, rng: &mut Rng, sight: &mut Sight) -> Vec<Landing> {
+        let Cavities { emitters, patches, .. } = self.cavities;
+        let tried = (0..SPOTS).map(|spot| place(emitters, patches, side, places.point(spot, rng)));
+        let tried: Vec<Landing> = tried.collect();
+        tried.into_iter().filter(|at| self.cavities.is_reached(at, side, rng, sight)).collect()
+    }
+}
+
+fn collect(common: &Links, side: usize, FirstLight { mut direct, mut rng, .. }: FirstLight) -> Collected {
+    let Links { cavities, highlights, aims, making } = *common;
     let (emitters, patches, rng) = (cavities.emitters, cavities.patches, &mut rng);
     let scene = emitters.scene;
     let channels = scene.channels.len();
@@ -155,19 +221,29 @@ fn collect(
     let total = reflectance + transmittance;
     let cover = cavities.covers[side];
     if !(total > 0.0) {
-        let (first, reached) = (direct.clone(), Reached::Whole);
-        return Collected { direct, first, links: Vec::new(), shares: Vec::new(), places: 0, reached };
+        let first = direct.clone();
+        return Collected { direct, first, ..Collected::without_links(Reached::Whole) };
     }
     let mut sight = Sight::new(channels);
     let (places, directions) = (Stratified::new(rng), Stratified::new(rng));
     let mut bundles = Vec::new();
-    let mut links = Vec::with_capacity(effort.links as usize);
-    let (mut shares, mut aims) = (Vec::new(), Aims::default());
+    let count = common.count(side);
+    let mut links = Vec::with_capacity(count as usize);
+    let mut shares = Vec::new();
+    let mut met_squares = 0.0;
+    let partial = making.purpose.is_seen() && cover == Cover::Partial;
+    let spots = if partial { common.spots(side, places, rng, &mut sight) } else { Vec::new() };
+    if partial && spots.is_empty() {
+        let first = direct.clone();
+        return Collected { direct, first, ..Collected::without_links(Reached::Dark) };
+    }
+    let aimed_places = aims.map(|aims| (aims, Stratified::new(rng)));
     let mut met = vec![0.0; channels];
     let mut taken = Vec::new();
-    for link in 0..effort.links {
-        let at = place(emitters, patches, side, places.point(link, rng));
-        if cover == Cover::Partial {
+    for link in 0..count {
+        let again = spots.get(link as usize % spots.len().max(1)).copied();
+        let at = again.unwrap_or_else(|| place(emitters, patches, side, places.point(link, rng)));
+        if cover == Cover::Partial && again.is_none() {
             if !cavities.is_reached(&at, side, rng, &mut sight) {
                 continue;
             }
@@ -181,14 +257,14 @@ fn collect(
         // What lobes reflect of luminaires is looked for about their highlights too.
         let origin = at.origin(scene, same_side);
         highlights.about(emitters, origin, |direction| facing.dot(direction), &mut bundles);
-        let aimed = if link % AIMED == 0 && !bundles.is_empty() {
+        let aimed = if link % GLINTS == 0 && !bundles.is_empty() {
             Some(highlights::draw(&bundles, rng.uniforms()))
         } else {
             None
         };
         for (number, direction) in aimed.into_iter().chain([direction]).enumerate() {
             let cosine = facing.dot(direction).max(0.0) * FRAC_1_PI;
-            let by_aim = highlights::density(&bundles, direction) / f64::from(AIMED);
+            let by_aim = highlights::density(&bundles, direction) / f64::from(GLINTS);
             let share = if bundles.is_empty() { 1.0 } else { cosine / (cosine + by_aim) };
             if number == 0 && aimed.is_some() && !(share > 0.0) {
                 continue;
@@ -197,52 +273,48 @@ fn collect(
             for (sum, value) in met.iter_mut().zip(&sight.met) {
                 *sum += share * value;
             }
+            met_squares += (share * sight.met.iter().sum::<f64>()).powi(2);
         }
-        // Density of the directions that reflection and transmission draw, times π.
-        let scattered = |direction: DVec3| {
-            let cos = at.normal.dot(direction);
-            cos.abs() * if cos > 0.0 { reflectance } else { transmittance } / total
-        };
-        beacons.about(at.point, scattered, 1, &mut aims);
-        let mut end = |sight: &Sight, share: f64| {
-            // A link through a glossy surface ends on its diffuse part and once more where its lobe leads.
-            for landing in &sight.landings {
-                add_emission(scene, landing.triangle, &mut met, share * landing.weight);
-                links.push(patches.side_at(landing.triangle, landing.barycentric, landing.front) as u32);
-                if !beacons.is_empty() {
-                    shares.push(share);
-                }
+        // A link through a glossy surface ends on its diffuse part and once more where its lobe leads.
+        for (number, landing) in sight.landings.iter().enumerate() {
+            let end = patches.side_at(landing.triangle, landing.barycentric, landing.front);
+            let mut share = 1.0;
+            if let (Some(aims), 0, true) = (aims, number, landing.way == Way::Clear) {
+                let albedo = if same_side { reflectance } else { transmittance };
+                let cosine = albedo / total * facing.dot(direction).max(0.0) * FRAC_1_PI;
+                let cos_there = landing.normal.dot(landing.to_eye);
+                share = aims.share(end, origin.distance(landing.point), cos_there, cosine);
             }
-        };
-        let share = |direction: DVec3, sight: &Sight| {
-            let by_aim = beacons.density(patches, at.point, &aims, sight) / f64::from(MARKED);
-            let drawn = scattered(direction) * FRAC_1_PI;
-            if by_aim > 0.0 { drawn / (drawn + by_aim) } else { 1.0 }
-        };
-        end(&sight, share(direction, &sight));
-        if link % MARKED == 0 && !aims.is_empty() {
-            let (direction, target) = beacons.draw(emitters, patches, at.point, &aims, rng.uniforms());
-            let origin = at.origin(scene, at.normal.dot(direction) > 0.0);
-            look(emitters, origin, direction, 1.0, rng, &mut sight);
-            if Beacons::came_to(patches, &sight, target) {
-                end(&sight, share(direction, &sight));
+            add_emission(scene, landing.triangle, &mut met, share * landing.weight);
+            links.push(end as u32);
+            if aims.is_some() {
+                shares.push(share);
             }
+        }
+        if let (Some((aims, points)), true) = (&aimed_places, link % AIMED == 0)
+            && let Some(aim) = aims.link(emitters, patches, &at, points.point(link / AIMED, rng))
+        {
+            add_emission(scene, aim.triangle, &mut met, aim.share);
+            links.push(aim.side as u32);
+            shares.push(aim.share);
         }
     }
     let (places, reached) = match cover {
-        Cover::Clear => (effort.links, Reached::Whole),
-        Cover::Dark => (effort.links, Reached::Dark),
+        Cover::Clear => (count, Reached::Whole),
+        Cover::Dark => (count, Reached::Dark),
         Cover::Partial => {
-            direct = direct_at(emitters, &taken, rng);
-            let points: Vec<DVec3> = taken.iter().map(|at| at.point).collect();
-            (taken.len() as u32, Reached::part(&points, effort.links))
+            let (lit, tried, places) =
+                if partial { (&spots, SPOTS, count) } else { (&taken, count, taken.len() as u32) };
+            direct = direct_at(emitters, lit, rng);
+            let points: Vec<DVec3> = lit.iter().map(|at| at.point).collect();
+            (places, Reached::part(&points, tried))
         }
     };
     let mut first = direct.clone();
     for (value, met) in first.iter_mut().zip(&met) {
         *value += met * total / f64::from(places.max(1));
     }
-    Collected { direct, first, links, shares, places, reached }
+    Collected { direct, first, links, shares, met_squares, places, reached }
 }
 
 /// Mean luminance that direct light makes at some of the places.
@@ -258,63 +330,4 @@ fn direct_at(emitters: &Emitters, places: &[Landing], rng: &mut Rng) -> Vec<f64>
         *value /= count.max(1) as f64;
     }
     direct
-}
-
-/// L(side) = first + (ρ + τ)/n Σ L(link), in place, in a fixed order.
-fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: &[Collected]) {
-    let scene = emitters.scene;
-    let channels = scene.channels.len();
-    let factor: Vec<f64> = (0..collected.len())
-        .map(|side| {
-            let (reflectance, transmittance) = scene.bsdf(field.patches().triangle(side)).diffuse();
-            (reflectance + transmittance) / f64::from(collected[side].places.max(1))
-        })
-        .collect();
-    let mut sums = vec![0.0; channels];
-    for number in 1..=MOST_SWEEPS {
-        if number.is_multiple_of(BALANCED) {
-            balance(field, collected, &factor);
-        }
-        let (mut change, mut whole) = (0.0, 0.0);
-        for (side, entry) in collected.iter().enumerate() {
-            if entry.links.is_empty() {
-                continue;
-            }
-            sums.fill(0.0);
-            for (link, share) in entry.ends() {
-                for (sum, value) in sums.iter_mut().zip(field.at(link)) {
-                    *sum += share * value;
-                }
-            }
-            let area = field.patches().area_m2(side) * entry.reached.share();
-            let stored = field.at_mut(side);
-            for ((stored, first), sum) in stored.iter_mut().zip(&entry.first).zip(&sums) {
-                let next = first + factor[side] * sum;
-                change += (next - *stored).abs() * area;
-                whole += next * area;
-                *stored = next;
-            }
-        }
-        if change <= SETTLED * whole {
-            break;
-        }
-    }
-}
-
-/// Scales each channel so that the flux fed in equals what the field loses,
-/// Σ A first = Σ A (L − (ρ + τ)/n Σ L(link)); the truth is left as it is.
-fn balance(field: &mut LuminanceField, collected: &[Collected], factor: &[f64]) {
-    let channels = collected.first().map_or(0, |entry| entry.first.len());
-    for channel in 0..channels {
-        let (mut fed, mut lost) = (0.0, 0.0);
-        for (side, entry) in collected.iter().enumerate() {
-            let sum: f64 = entry.ends().map(|(link, share)| share * field.at(link)[channel]).sum();
-            let area = field.patches().area_m2(side) * entry.reached.share();
-            fed += area * entry.first[channel];
-            lost += area * (field.at(side)[channel] - factor[side] * sum);
-        }
-        if lost > 0.0 && (fed / lost).is_finite() {
-            (0..collected.len()).for_each(|side| field.at_mut(side)[channel] *= fed / lost);
-        }
-    }
 }

@@ -49,9 +49,14 @@ fn only(demand: &Demand, index: usize) -> Demand {
 
 /// Reference values by links, one per receiver (its first kernel) and ray.
 fn reference(scene: &Scene, demand: &Demand) -> Vec<Estimate> {
-    // Highlights of highlights and reflections of small tiles in panes are rare: they need more to be known well.
-    let rare = |bsdf: &Bsdf| bsdf.lobe().is_some() || bsdf.emitted() > 0.0;
-    let blocks = if scene.materials.iter().any(|material| rare(&material.bsdf)) { 4096 } else { 512 };
+    // Highlights of highlights are rare, and reflections of small tiles in panes even more: they need more to
+    // be known well.
+    let any = |is: fn(&Bsdf) -> bool| scene.materials.iter().any(|material| is(&material.bsdf));
+    let blocks = match (any(|bsdf| bsdf.emitted() > 0.0), any(|bsdf| bsdf.lobe().is_some())) {
+        (true, _) => 12_288,
+        (false, true) => 4096,
+        (false, false) => 512,
+    };
     let effort = Effort { gather: 64, walks: 32, ..Effort::default() };
     let sheets = sheets(scene, demand, Method::Links, effort, 1, blocks);
     let first_ray = demand.rows() - demand.rays.len();

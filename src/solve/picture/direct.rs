@@ -1,5 +1,5 @@
-//! Direct light at the places a tile of pixels sees. Unshadowed illuminance is exact, and within a
-//! flat tile as smooth as a plane; the visible share of each opening is sampled, once a pixel where
+//! Direct light at the places a tile of pixels sees. Unshadowed illuminance is exact, or interpolated
+//! where that is as good ([`super::even`]); the visible share of each opening is sampled, once a pixel where
 //! all of it is seen or none, more often in the half-shadows that a few trial rays find.
 //!
 //!   L = (ρ/π) Σ E_unshadowed · Σ V I cos/d² / Σ I cos/d²
@@ -10,13 +10,14 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
+use super::super::look::Way;
+use super::even::{self, Allowance};
 use super::{Counts, Picture, Seen, Sight, TILE};
 use crate::emitters::{Arrival, Emitters, Source, unshadowed};
-use crate::photometry::Opening;
 use crate::query::Kernel;
 use crate::rng::Rng;
 
-/// Shadow rays a luminaire and pixel in half-shadows.
+/// Most shadow rays a luminaire and pixel in half-shadows.
 const HALF_SHADOW: u32 = 8;
 /// Trial rays of a tile towards each luminaire: points of the opening.
 const TRIALS: [[f64; 2]; 5] = [[0.5, 0.5], [0.06, 0.06], [0.94, 0.06], [0.06, 0.94], [0.94, 0.94]];
@@ -27,8 +28,10 @@ const GAUSS_4: [f64; 4] =
 /// Opening radii within which the finer rule is used, and the error-controlled one.
 const NEAR: f64 = 5.0;
 const AT_HAND: f64 = 1.5;
-/// Largest error of a plane through the unshadowed illuminances of a tile, checked at a fourth point.
-const FLAT: f64 = 0.004;
+/// A lamp with this share of a place's light gets all shadow rays in its half-shadow, others in proportion.
+const MUCH: f64 = 0.25;
+/// No half-shadow is told from fewer.
+const FEWEST: u32 = 2;
 
 /// Points of a square, such as of an opening for the pixels of a tile: Roberts' additive sequence with the plastic number,
 /// randomly shifted, so that each point is uniform and neighbours in the sequence lie far apart.
@@ -57,6 +60,13 @@ struct Spot {
     factor: f64,
 }
 
+/// A luminaire or an image with its factor and the points on its opening.
+struct Lamp<'p> {
+    source: &'p Source,
+    weight: f64,
+    points: Points,
+}
+
 /// Adds the direct light of a tile, pixel by pixel.
 pub(super) fn add(
     picture: &Picture,
@@ -67,9 +77,11 @@ pub(super) fn add(
 ) {
     let scene = picture.emitters.scene;
     let mut spots: Vec<Spot> = Vec::with_capacity(TILE * TILE);
+    let mut straight = true;
     for (pixel, sight) in sights.iter().enumerate() {
         for Seen { landing, share } in &sight.places {
             let (reflectance, transmittance) = scene.bsdf(landing.triangle).diffuse();
+            straight &= landing.way == Way::Clear;
             for (albedo, same_side) in [(reflectance, true), (transmittance, false)] {
                 if albedo > 0.0 {
                     let normal = if same_side { landing.normal } else { -landing.normal };
@@ -84,6 +96,7 @@ pub(super) fn add(
         return;
     }
     let flat = is_flat(&spots);
+    let mut lamps: Vec<Lamp> = Vec::with_capacity(scene.luminaires.len());
     for source in &picture.emitters.sources {
         let weight = picture.weights[source.channel];
         if !(weight > 0.0) {
@@ -95,17 +108,26 @@ pub(super) fn add(
                 put(pixel, weight * luminance);
             });
         } else {
-            let exact = unshadowed_lx(picture, source, &spots, flat);
-            if exact.iter().all(|lx| !(*lx > 0.0)) {
-                continue;
-            }
-            let clear = flat && is_clear(picture.emitters, source, &spots);
-            let rays = if clear { 0 } else { rays_wanted(picture, source, &spots, counts) };
-            for (index, (spot, lx)) in spots.iter().zip(exact).enumerate() {
-                if lx > 0.0 && picture.emitters.lights(source, spot.triangle) {
-                    let visible = visible_share(picture, source, spot, index as u32, rays, points, counts);
-                    put(spot.pixel, weight * spot.factor * lx * visible);
-                }
+            lamps.push(Lamp { source, weight, points });
+        }
+    }
+    let unshadowed = unshadowed_lx(picture, &lamps, &spots, flat && straight);
+    let mut whole = vec![0.0; spots.len()];
+    for (lamp, lx) in lamps.iter().zip(&unshadowed) {
+        whole.iter_mut().zip(lx).for_each(|(whole, lx)| *whole += lamp.weight * lx);
+    }
+    for (Lamp { source, weight, points }, exact) in lamps.iter().zip(&unshadowed) {
+        if exact.iter().all(|lx| !(*lx > 0.0)) {
+            continue;
+        }
+        let clear = flat && is_clear(picture.emitters, source, &spots);
+        let most = if clear { 0 } else { rays_wanted(picture, source, &spots, counts) };
+        for (index, (spot, lx)) in spots.iter().zip(exact).enumerate() {
+            if *lx > 0.0 && picture.emitters.lights(source, spot.triangle) {
+                let part = (weight * lx / (MUCH * whole[index])).min(1.0);
+                let rays = ((f64::from(most) * part).ceil() as u32).max(FEWEST.min(most));
+                let visible = visible_share(picture, source, spot, index as u32, rays, *points, counts);
+                put(spot.pixel, weight * spot.factor * lx * visible);
             }
         }
     }
@@ -115,8 +137,7 @@ pub(super) fn add(
 fn is_clear(emitters: &Emitters, source: &Source, spots: &[Spot]) -> bool {
     let luminaire = emitters.luminaire(source);
     let opening = luminaire.kind.opening;
-    let is_flat = matches!(opening, Opening::Rect { .. } | Opening::Disc { .. } | Opening::Ellipse { .. });
-    if !(source.is_point() || is_flat && opening.pieces() == 0) {
+    if !(source.is_point() || opening.is_level()) {
         return false;
     }
     let corner = |sign: [f64; 2]| {
@@ -142,19 +163,32 @@ fn is_flat(spots: &[Spot]) -> bool {
         })
 }
 
-/// Unshadowed illuminance of every spot, lx.
-fn unshadowed_lx(picture: &Picture, source: &Source, spots: &[Spot], flat: bool) -> Vec<f64> {
-    let exact = |spot: &Spot| quick_unshadowed(picture.emitters, source, spot.origin, spot.normal);
-    if flat && let Some(plane) = plane_through(spots, &exact) {
-        return plane;
+/// Unshadowed illuminance of every spot by every lamp, lx. `even`: the spots are those of a plane that the
+/// eye sees straight.
+fn unshadowed_lx(picture: &Picture, lamps: &[Lamp], spots: &[Spot], even: bool) -> Vec<Vec<f64>> {
+    let exact =
+        |lamp: &Lamp, spot: &Spot| quick_unshadowed(picture.emitters, lamp.source, spot.origin, spot.normal);
+    if !even {
+        return lamps.iter().map(|lamp| spots.iter().map(|spot| exact(lamp, spot)).collect()).collect();
     }
-    spots.iter().map(exact).collect()
+    let middle: Vec<f64> = lamps.iter().map(|lamp| exact(lamp, &spots[even::MIDDLE])).collect();
+    let whole: f64 = lamps.iter().zip(&middle).map(|(lamp, lx)| lamp.weight * lx).sum();
+    let share_lx = whole / lamps.len().max(1) as f64;
+    let of_lamp = |(lamp, middle): (&Lamp, &f64)| {
+        let allowance = Allowance { anyway_lx: share_lx / lamp.weight };
+        let at = |pixel: usize| if pixel == even::MIDDLE { *middle } else { exact(lamp, &spots[pixel]) };
+        even::filled(at, allowance)
+    };
+    lamps.iter().zip(&middle).map(of_lamp).collect()
 }
 
 /// Unshadowed illuminance on a plane, lx: Lambert's formula for uniform polygons; a Gauss rule of
 /// 2 × 2 points for tabulated openings, 4 × 4 near them or where the plane cuts them, and the
 /// error-controlled one where the opening is at hand.
 fn quick_unshadowed(emitters: &Emitters, source: &Source, point: DVec3, normal: DVec3) -> f64 {
+    if source.is_behind(point) {
+        return 0.0;
+    }
     let towards = source.position - point;
     let distance_m = towards.length();
     let uniform = emitters.luminaire(source).kind.distribution.lambert_flux().is_some();
@@ -179,34 +213,6 @@ fn quick_unshadowed(emitters: &Emitters, source: &Source, point: DVec3, normal: 
         }
     }
     sum / (nodes.len() * nodes.len()) as f64
-}
-
-/// The affine function of place through three corners of a flat tile, if it also fits the fourth.
-fn plane_through(spots: &[Spot], exact: &impl Fn(&Spot) -> f64) -> Option<Vec<f64>> {
-    let corners = [0, TILE - 1, TILE * (TILE - 1), TILE * TILE - 1].map(|index| &spots[index]);
-    let lx = corners.map(exact);
-    let most = lx.iter().copied().fold(0.0, f64::max);
-    if lx.iter().all(|lx| *lx == 0.0) {
-        return Some(vec![0.0; spots.len()]);
-    }
-    let origin = corners[0].origin;
-    let (e, f) = (corners[1].origin - origin, corners[2].origin - origin);
-    let (ee, ef, ff) = (e.dot(e), e.dot(f), f.dot(f));
-    let determinant = ee * ff - ef * ef;
-    if !(determinant > 1e-6 * ee * ff) {
-        return None;
-    }
-    let at = |place: DVec3| {
-        let d = place - origin;
-        let (a, b) = (d.dot(e), d.dot(f));
-        let (s, t) = ((a * ff - b * ef) / determinant, (b * ee - a * ef) / determinant);
-        lx[0] + s * (lx[1] - lx[0]) + t * (lx[2] - lx[0])
-    };
-    let off = (at(corners[3].origin) - lx[3]).abs();
-    if lx.contains(&0.0) || off > FLAT * most {
-        return None;
-    }
-    Some(spots.iter().map(|spot| at(spot.origin).max(0.0)).collect())
 }
 
 /// Shadow rays per pixel, from trial rays of the spots at the tile's middle and corners.
@@ -259,7 +265,7 @@ fn visible_share(
     }
     let (mut whole, mut passed) = (0.0, 0.0);
     for ray in 0..rays {
-        let u = points.point(number * rays + ray);
+        let u = points.point(number * HALF_SHADOW + ray);
         let facing = |direction: DVec3| spot.normal.dot(direction) > 0.0;
         let Some(arrival) = picture.emitters.arrival_if(source, spot.origin, u, facing) else { continue };
         let light = arrival.normal_lx * spot.normal.dot(arrival.direction);

@@ -22,7 +22,7 @@ pub struct Glare {
     #[arg(long, requires = "project")]
     pub unbiased: bool,
     /// Of a project: values from a field that `solve` kept (its file or folder) with nothing solved anew; no interval
-    #[arg(long, value_name = "FILE", requires = "project", conflicts_with_all = ["compare_methods", "unbiased", "blocks"])]
+    #[arg(long, value_name = "FILE", requires = "project", conflicts_with_all = ["compare_methods", "unbiased", "blocks", "seed"])]
     pub field: Option<PathBuf>,
     /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
     #[arg(long, value_name = "DIR", requires = "project")]
@@ -82,7 +82,7 @@ pub struct Glare {
     /// Picture with every source in a colour of its own, .png or .svg; for one image
     #[arg(long, value_name = "FILE")]
     pub check: Option<PathBuf>,
-    /// Of a project: how the run goes
+    /// How the run goes; seed and files outside concern a project
     #[command(flatten)]
     pub run: Run,
 }

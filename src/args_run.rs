@@ -16,7 +16,7 @@ pub struct Run {
     /// Let the project read files outside its folder
     #[arg(long)]
     pub allow_outside: bool,
-    /// Print nothing but errors
+    /// Print nothing but errors, and what --format asks for scripts
     #[arg(short, long)]
     pub quiet: bool,
 }

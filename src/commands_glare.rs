@@ -21,7 +21,7 @@ use gershun::units::Nits;
 use rayon::prelude::*;
 
 use crate::args_glare::{DgpChoice, Glare, GlareFormat, Peak, PositionChoice};
-use crate::commands_run::open;
+use crate::commands_run::{open, use_threads};
 use crate::commands_solve::stored;
 use crate::{BAD_INPUT, COMPLIES, complain, remark, say};
 
@@ -31,6 +31,9 @@ const TASK_FACTOR: f64 = 5.0;
 pub fn run(glare: &Glare) -> u8 {
     if let Some(project) = &glare.project {
         return observers(glare, project);
+    }
+    if let Err(code) = use_threads(glare.run.threads) {
+        return code;
     }
     if glare.check.is_some() && glare.image.len() > 1 {
         return complain("--check draws one image; name one");
@@ -68,7 +71,7 @@ pub fn run(glare: &Glare) -> u8 {
         GlareFormat::Csv => report::indices_csv(&evaluated),
     };
     match text {
-        Ok(text) => worst.max(say(&text)),
+        Ok(text) => worst.max(tell(glare, &text)),
         Err(error) => complain(&error.to_string()),
     }
 }
@@ -125,9 +128,14 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
         GlareFormat::Csv => report::observed_csv(&observed),
     };
     match text {
-        Ok(text) => say(&text),
+        Ok(text) => tell(glare, &text),
         Err(error) => complain(&error.to_string()),
     }
+}
+
+/// Prints the results; to people only if they want to hear.
+fn tell(glare: &Glare, text: &str) -> u8 {
+    if glare.run.quiet && glare.format == GlareFormat::Human { COMPLIES } else { say(text) }
 }
 
 /// How maps are computed.

@@ -236,6 +236,7 @@ fn far_field(args: &FarFieldArgs, project: &Project) -> Result<u8, String> {
         text.push_str(&format!("{}\n", out.display()));
     }
     Ok(match args.format {
+        InfoFormat::Human if args.run.quiet => COMPLIES,
         InfoFormat::Human => say(&(text + &report::far_field_text(&field, args.lang.lang()))),
         InfoFormat::Json => print(report::far_field_json(&field)),
     })

@@ -481,3 +481,23 @@ fn every_command_refuses_a_wrong_project_in_the_same_words() {
     let far_field = gershun(&["lamp", "far-field", text(folder.path())]);
     assert_eq!((far_field.status.code(), errors(&far_field)), (Some(2), checked));
 }
+
+/// Catches: `--quiet` that is taken and not heeded; errors that it swallows.
+#[test]
+fn quiet_commands_say_nothing_but_errors() {
+    let folder = folder(GOOD, &[]);
+    let out = folder.path().join("out");
+    let project = text(folder.path());
+    for command in
+        [&["check", "--blocks", "2", "--undecided", "pass"][..], &["solve"], &["glare", "--blocks", "2"]]
+    {
+        let loud = gershun(&[command, &["--out", text(&out), project]].concat());
+        let quiet = gershun(&[command, &["-q", "--out", text(&out), project]].concat());
+        assert_eq!(quiet.status.code(), loud.status.code(), "{command:?}");
+        assert!(!loud.stdout.is_empty(), "{command:?} has nothing to be quiet about");
+        assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty(), "{command:?}: {}", errors(&quiet));
+    }
+    let missing = gershun(&["glare", "-q", "--image", "no such.hdr"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(errors(&missing).contains("no such.hdr"));
+}

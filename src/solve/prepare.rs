@@ -30,6 +30,7 @@ const GLINTS: u32 = 4;
 const SPARED: u32 = 32;
 /// Places that are tried on partly covered sides of what is shown.
 const SPOTS: u32 = 32;
+
 /// Direct light of one patch side, and where its random numbers go on.
 struct FirstLight {
     /// Luminance that luminaires and their images make here, per channel.
@@ -83,8 +84,8 @@ pub(super) enum Purpose {
 }
 
 impl Purpose {
-    /// What is shown has links that are aimed at bright places too, spares those of dark sides, and tries
-    /// fewer places of partly covered ones.
+    /// What is shown has links that are aimed at bright places in every scene, spares those of dark sides,
+    /// and tries fewer places of partly covered ones.
     fn is_seen(self) -> bool {
         match self {
             Self::Control => false,

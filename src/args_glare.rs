@@ -64,7 +64,8 @@ pub struct Glare {
     /// Illuminance measured at the eye, lx, in place of the image's own
     #[arg(long, value_name = "LX", value_parser = positive)]
     pub measured_ev: Option<f64>,
-    /// View of images that do not say it, as Radiance writes it: "-vta -vv 180 -vh 180"
+    /// View in place of the file's own, as Radiance writes it: "-vta -vh 180 -vv 180"; what it leaves out is
+    /// the file's, and without one there it must say -vt, -vh and -vv
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub view: Option<String>,
     /// Half height of a horizontal band whose luminance is asked for, rad

@@ -9,7 +9,7 @@ use gershun::glare::gradient::{SCALE_DEG, gradient};
 use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
-use gershun::image::{LuminanceImage, ViewOptions, read};
+use gershun::image::{LuminanceImage, asked_view, read};
 use gershun::observe::map::{MapMethod, Mapped, maps};
 use gershun::observe::stored::observe_stored;
 use gershun::observe::{CONVENTIONS, Observed, Sheets, observe, room_tables};
@@ -166,16 +166,16 @@ fn write_cards(folder: &Path, observed: &[Observed], lang: Lang) -> Result<(), S
     Ok(())
 }
 
-/// The image of a file; `view`, if given, takes the place of what the file says.
+/// The image of a file; what `view` says, if it is given, takes the place of what the file says.
 fn image(path: &Path, view: Option<&str>) -> Result<LuminanceImage, String> {
     let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = read_image(path).map_err(|error| error.to_string())?;
     let mut image = read(&bytes).map_err(|error| at(&error))?;
     if let Some(text) = view {
-        let mut options = ViewOptions::default();
-        options.add(text).map_err(|error| format!("--view: {error}"))?;
-        image.view = Some(options.view().map_err(|error| format!("--view: {error}"))?);
-        image.notes.push("the view is that of the command line".into());
+        let view = asked_view(text, image.view.as_ref())
+            .map_err(|error| format!("{}: --view: {error}", path.display()))?;
+        image.notes.push(format!("the view is that of the command line: {}", view.to_options()));
+        image.view = Some(view);
     }
     Ok(image)
 }

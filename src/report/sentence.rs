@@ -209,12 +209,17 @@ pub fn overall(lang: Lang, outcome: &Outcome) -> String {
     }
 }
 
-/// The verdict of the whole and, apart from it, its counts.
+/// The verdict of the whole and, apart from it, its counts. It names the norm only where requirements of the
+/// norm decide; where the project's own do, it names those.
 pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) {
     let tally = Tally::of(&outcome.requirements);
-    let name = outcome.norm.as_ref().map(|norm| norm.short.clone());
-    let with = |named: Term, plain: Term| match &name {
-        Some(name) => phrase(lang, named, &[name]),
+    let of_norm = Tally::of(outcome.requirements.iter().filter(|r| r.standard != PROJECT));
+    let norm = outcome.norm.as_ref().map(|norm| norm.short.as_str());
+    let project = word(lang, Term::ProjectRequirements);
+    // Whose requirements give the verdict of the whole.
+    let whose = norm.map(|norm| if of_norm.verdict() == tally.verdict() { norm } else { project });
+    let with = |named: Term, plain: Term| match whose {
+        Some(whose) => phrase(lang, named, &[whose]),
         None => word(lang, plain).to_owned(),
     };
     let total = tally.judged().to_string();
@@ -230,19 +235,21 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
         }
         Some(Verdict::Pass) => {
             counts.push(count(Term::PassedOf, tally.pass));
-            let project = word(lang, Term::ProjectRequirements);
-            match &name {
-                Some(name) => phrase(lang, Term::CompliesWith, &[name]),
-                None => phrase(lang, Term::CompliesWith, &[project]),
-            }
+            phrase(lang, Term::CompliesWith, &[whose.unwrap_or(project)])
         }
         Some(_) => {
             counts.push(count(Term::OpenOf, tally.open));
             counts.push(count(Term::PassedOf, tally.pass));
             with(Term::OpenWith, Term::OpenAll)
         }
-        None => word(lang, Term::NothingRequired).to_owned(),
+        None => match norm {
+            Some(norm) => phrase(lang, Term::NormNotAssessed, &[norm]),
+            None => word(lang, Term::NothingRequired).to_owned(),
+        },
     };
+    if let Some(norm) = norm.filter(|_| of_norm.verdict().is_none() && tally.verdict().is_some()) {
+        counts.push(phrase(lang, Term::NormNotAssessed, &[norm]));
+    }
     if tally.declared > 0 {
         counts.push(phrase(lang, Term::DeclaredCount, &[&tally.declared.to_string()]));
     }
@@ -250,6 +257,18 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
         counts.push(phrase(lang, Term::NotAssessedCount, &[&tally.not_assessed.to_string()]));
     }
     (head, (!counts.is_empty()).then(|| counts.join("; ")))
+}
+
+/// The `standard` of a `[[require]]`.
+const PROJECT: &str = "project";
+
+/// What a room's line says that has a verdict or none.
+pub fn room_verdict(lang: Lang, tally: Tally) -> &'static str {
+    match tally.verdict() {
+        Some(verdict) => words::verdict(lang, verdict),
+        None if tally.not_assessed > 0 => word(lang, Term::NotAssessed),
+        None => word(lang, Term::NothingRequired),
+    }
 }
 
 /// Key of a verdict in files for machines.
@@ -280,4 +299,58 @@ pub fn line(requirement: &Requirement) -> String {
         text.value,
         text.interval,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    /// Catches: a norm that is said to be complied with, or not, by requirements of the project's own.
+    #[test]
+    fn the_verdict_of_the_whole_names_those_whose_requirements_decide() {
+        let all = sample::outcome();
+        let judged = |norm: &[Verdict], own: &[Verdict]| {
+            let mut outcome = all.clone();
+            let one = |standard: &str, verdict: Verdict| Requirement {
+                standard: standard.into(),
+                verdict,
+                ..all.requirements[0].clone()
+            };
+            outcome.requirements = norm.iter().map(|&v| one("en-12464-1-2021", v)).collect();
+            outcome.requirements.extend(own.iter().map(|&v| one("project", v)));
+            overall(Lang::En, &outcome)
+        };
+        use Verdict::{Fail, NotAssessed, Pass, Undecided};
+        let own = "the project's own requirements";
+        let norm = "EN 12464-1:2021";
+        for (of_norm, of_project, says) in [
+            (&[Pass][..], &[Pass][..], format!("complies with {norm}: 2 of 2 requirements pass")),
+            (&[Pass], &[Fail], format!("does not comply with {own}: 1 of 2 requirements fail")),
+            (&[Fail], &[Pass], format!("does not comply with {norm}: 1 of 2 requirements fail")),
+            (
+                &[Undecided],
+                &[Pass],
+                format!(
+                    "compliance with {norm} is not established: 1 of 2 undecided or without value; 1 of 2 requirements pass"
+                ),
+            ),
+            (
+                &[NotAssessed],
+                &[Pass],
+                format!(
+                    "complies with {own}: 1 of 1 requirements pass; {norm} is not assessed; 1 not assessed"
+                ),
+            ),
+            (
+                &[],
+                &[Fail],
+                format!("does not comply with {own}: 1 of 1 requirements fail; {norm} is not assessed"),
+            ),
+            (&[NotAssessed], &[], format!("{norm} is not assessed: 1 not assessed")),
+            (&[], &[], format!("{norm} is not assessed")),
+        ] {
+            assert_eq!(judged(of_norm, of_project), says);
+        }
+    }
 }

@@ -319,6 +319,19 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "gershun не рассчитывает эту величину для помещения",
     ),
     ("gershun does not compute this quantity", "gershun не рассчитывает эту величину"),
+    (
+        "luminaire \"{}\" hangs at ({}, {}, {}) more than once; their light adds up",
+        "светильник «{}» подвешен в точке ({}, {}, {}) более одного раза; световые потоки складываются",
+    ),
+    (
+        "luminaire \"{}\" has a maintenance of its own: {} of room \"{}\" does not hold for it",
+        "у светильника «{}» собственный коэффициент эксплуатации: {} помещения «{}» на него не действует",
+    ),
+    ("room \"{}\" measures {} m × {} m × {} m", "размеры помещения «{}»: {} м × {} м × {} м"),
+    (
+        "no row of the norm is given: name one in the room, its areas or [norm]",
+        "строка нормы не указана: назовите её для помещения, его областей или в [norm]",
+    ),
     ("the norm's file has no value of {} for row {}", "в файле нормы нет значения {} для строки {}"),
     (
         "the norm judges UGR at observers and the project lists no viewpoint here",

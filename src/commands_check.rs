@@ -13,7 +13,7 @@ use gershun::{Progress, Watch};
 use crate::args::{Check, ColourChoice, Format, Undecided};
 use crate::args_run::LangChoice;
 use crate::commands_lamp::faults;
-use crate::commands_run::{LateBar, folder, opened, spoken, use_threads};
+use crate::commands_run::{LateBar, folder, opened, spoken, use_threads, warn};
 use crate::{BAD_INPUT, COMPLIES, FAILS, INTERRUPTED, UNDECIDED, complain, remark, say};
 
 /// Runs the command.
@@ -60,6 +60,7 @@ fn graver(a: u8, b: u8) -> u8 {
 
 fn load_one(path: &Path, check: &Check) -> Option<Project> {
     let project = opened(path, check.load_options()).ok()?;
+    warn(&project, check.run.quiet);
     if !check.run.quiet {
         for fault in faults(path, &project) {
             remark(&fault);

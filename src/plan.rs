@@ -12,7 +12,7 @@ mod zones;
 
 use glam::DVec3;
 
-use crate::grid::{Grid, GridError};
+use crate::grid::{self, Grid, GridError};
 use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, AreaShape, CustomSubject, Modification, Place, Project, World};
 use crate::quantity::{Property, Quantity, Statistic};
@@ -179,6 +179,13 @@ pub enum PlanError {
         /// Where the area is written, if a user wrote it.
         place: Option<Place>,
     },
+    /// More points than can be answered.
+    TooManyPoints {
+        /// Rooms of the world, joined.
+        rooms: String,
+        /// How many there are at least.
+        points: usize,
+    },
     /// A row that does not exist.
     NoRow {
         /// Norm key.
@@ -200,6 +207,12 @@ impl std::fmt::Display for PlanError {
                 format!("area \"{area}\": every grid point lies inside furniture or another area"),
                 "move the area, or give it a finer grid".to_owned(),
                 place,
+            ),
+            Self::TooManyPoints { rooms, points } => (
+                format!("room \"{rooms}\": {points} points and more are asked for, {} at most", grid::MAX_POINTS),
+                "lengths are metres, in a CAD file too; else give the areas coarser grids: grid = { step = 1 }"
+                    .to_owned(),
+                &None,
             ),
             Self::NoRow { standard, row, by } => (
                 format!("norm {standard} has no row \"{row}\" (asked for by {by})"),

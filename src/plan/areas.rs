@@ -38,6 +38,7 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
     }
     let is_total =
         project.norm.as_ref().is_some_and(|norm| norm.standard.application.surrounding_of_task.is_some());
+    let mut points = 0;
     for (index, spec) in specs.iter().enumerate() {
         let mut grid = match lay(spec, &world.rooms[spec.room], &world.scene) {
             Ok(grid) => grid,
@@ -58,6 +59,12 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
                 spec.name,
                 grid.points.len()
             ));
+        }
+        points += grid.points.len();
+        if points > grid::MAX_POINTS {
+            let rooms: Vec<&str> = world.rooms.iter().map(|room| room.name.as_str()).collect();
+            errors.push(PlanError::TooManyPoints { rooms: rooms.join(", "), points });
+            return;
         }
         let wanted = quantities(project, world, spec, index, &grid);
         let quantities = ask(plan, &grid, &wanted);

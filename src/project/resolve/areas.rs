@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 
 use super::area_surface::on_surface;
-use super::draft::{Draft, Located, in_room, locate, room_named, room_names};
+use super::draft::{Draft, Located, in_room, locate_area, room_named, room_names};
 use super::lists::Table;
 use super::{settings, zones};
 use crate::geometry::polygon;
@@ -223,8 +223,7 @@ fn shape(
         return None;
     }
     let name = section.name.get_ref();
-    let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-    let (world, room) = match (wanted.ok()?, locate(drafts, centre)) {
+    let (world, room) = match (wanted.ok()?, locate_area(drafts, &corners)) {
         (Some((world, room)), _) | (None, Located::In(world, room)) => (world, room),
         (None, Located::Outside) => {
             let message = format!("area \"{name}\" lies outside of every room");

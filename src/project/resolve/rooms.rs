@@ -67,13 +67,16 @@ pub fn add_room(
     let (footprint, floor_m, height_m) = boundary;
     let mut factors = RoomFactors::default();
     let mut rsmf = 1.0;
+    check_extent(&footprint, height_m, name, section, draft, context);
     if let Some(mf) = section.and_then(|section| section.mf.as_ref()) {
+        let span = mf.span();
         let mf = mf.get_ref();
         let mut factor = |value: &Option<At<f64>>, name: &str| {
             let value = value.as_ref()?;
             check_factor(value, name, context).then_some(*value.get_ref())
         };
         factors = RoomFactors {
+            span,
             llmf: factor(&mf.llmf, "llmf"),
             lsf: factor(&mf.lsf, "lsf"),
             lmf: factor(&mf.lmf, "lmf"),
@@ -111,6 +114,34 @@ pub fn add_room(
         luminaires: Vec::new(),
     });
     draft.factors.push(factors);
+}
+
+/// Longest room that is not asked about, m.
+const LONGEST_M: f64 = 1000.0;
+
+/// Rooms beyond a kilometre are drawn in millimetres more often than they are built.
+fn check_extent(
+    footprint: &[DVec2],
+    height_m: f64,
+    name: &str,
+    section: Option<&RoomSection>,
+    draft: &Draft,
+    context: &mut Context,
+) {
+    let low = footprint.iter().copied().reduce(DVec2::min).unwrap_or_default();
+    let high = footprint.iter().copied().reduce(DVec2::max).unwrap_or_default();
+    let size = high - low;
+    if !(size.max_element().max(height_m) > LONGEST_M) {
+        return;
+    }
+    let span = section.map_or_else(|| draft.span.clone(), |section| section.name.span());
+    let message = format!("room \"{name}\" measures {:.0} m × {:.0} m × {height_m:.0} m", size.x, size.y);
+    let hint = if draft.cad {
+        "glTF counts in metres: a drawing in millimetres is exported with the scale 0.001"
+    } else {
+        "lengths are metres: 6000 mm are 6"
+    };
+    context.warn(&span, message, hint);
 }
 
 /// A maintenance factor: greater than 0, at most 1.

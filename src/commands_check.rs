@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use gershun::outcome::{Outcome, Verdict};
 use gershun::project::Project;
+use gershun::report::words::{Term, phrase};
 use gershun::report::{self, Colour, Style};
 use gershun::{Progress, Watch};
 
@@ -145,8 +146,9 @@ fn print(outcome: &Outcome, check: &Check, out: &Path) -> u8 {
             }
             let code = say(&text);
             let stopped = report::words::stopped(lang, &outcome.solver.stopped);
-            let page = out.join("report.html");
-            remark(&format!("{} blocks: {stopped}\nreport: {}", outcome.solver.blocks, page.display()));
+            let page = out.join("report.html").display().to_string();
+            let done = phrase(lang, Term::BlocksDone, &[&outcome.solver.blocks.to_string(), stopped]);
+            remark(&format!("{done}\n{}", phrase(lang, Term::ReportAt, &[&page])));
             code
         }
         Format::Json => match std::fs::read_to_string(out.join("result.json")) {

@@ -95,6 +95,8 @@ pub struct PlannedView {
     pub eye: DVec3,
     /// Unit line of sight.
     pub direction: DVec3,
+    /// Its azimuth, degrees from +x towards +y.
+    pub azimuth_deg: f64,
     /// Row of the illuminance at the eye.
     pub row: usize,
     /// Keys of the indices asked for beside UGR, by the viewpoint or by a requirement.
@@ -238,7 +240,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
     areas::plan(project, world, &mut plan, &mut errors);
     for (index, viewpoint) in world.viewpoints.iter().enumerate() {
         let indices = indices(world, index);
-        for &direction in &viewpoint.directions {
+        for (&direction, &azimuth_deg) in viewpoint.directions.iter().zip(&viewpoint.azimuths_deg) {
             let row = plan.ask(Receiver {
                 point: viewpoint.eye,
                 lift: DVec3::ZERO,
@@ -249,6 +251,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 viewpoint: index,
                 eye: viewpoint.eye,
                 direction,
+                azimuth_deg,
                 row,
                 indices: indices.clone(),
                 light_scene: viewpoint.light_scene.unwrap_or(0),

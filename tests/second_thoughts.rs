@@ -253,3 +253,18 @@ fn a_room_without_a_row_is_not_assessed() {
     assert!(said.starts_with("complies with the project's own requirements: 1 of 1"), "{said}");
     assert!(said.contains("EN 12464-1:2021 is not assessed"), "{said}");
 }
+
+/// Catches: a list whose second column of a name is passed over, a line of sight beyond the zenith.
+#[test]
+fn lists_are_read_strictly() {
+    let text = format!("{GOOD}[lists]\nviewpoints = \"views.csv\"\n");
+    for (list, line, says) in [
+        ("name,x,y,z,azimuth,x\nS,1,1,1.2,0,2\n", 1, "a second column \"x\""),
+        ("name,x,y,z,azimuth,tilt\nS,1,1,1.2,0,95\n", 2, "tilt must lie in −90 … 90, found 95"),
+    ] {
+        let file = ("views.csv".to_owned(), list.as_bytes().to_vec());
+        let errors = loaded(&text, &[file]).expect_err("a mistake");
+        let [error] = &errors[..] else { panic!("{}", all(&errors)) };
+        assert_eq!((error.file.as_str(), error.line, error.message.as_str()), ("views.csv", line, says));
+    }
+}

@@ -31,6 +31,18 @@ impl LuminanceImage {
         [self.width, self.height]
     }
 
+    /// Mean luminance in cd/m² of what the projection shows, Σ L ω / Σ ω; of all pixels alike without a view.
+    pub fn mean_cd_m2(&self) -> f64 {
+        let (mut light, mut seen_sr) = (0.0, 0.0);
+        for (index, luminance) in self.luminance_cd_m2.iter().enumerate() {
+            let pixel = [index % self.width, index / self.width];
+            let solid_angle_sr = self.view.map_or(1.0, |view| view.solid_angles_sr(self.size(), pixel)[0]);
+            light += luminance * solid_angle_sr;
+            seen_sr += solid_angle_sr;
+        }
+        if seen_sr > 0.0 { light / seen_sr } else { 0.0 }
+    }
+
     /// Illuminance in lx on the plane of the eye, E_v = Σ L ω cos θ over what lies in front of it;
     /// `None` without a view. It is the whole E_v only if the view sees the whole half-space.
     pub fn illuminance_lx(&self) -> Option<f64> {

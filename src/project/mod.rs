@@ -301,6 +301,8 @@ pub struct Viewpoint {
     pub eye: DVec3,
     /// Unit lines of sight: one, or a sweep about the vertical.
     pub directions: Vec<DVec3>,
+    /// Their azimuths as they were written, else as they follow, degrees from +x towards +y.
+    pub azimuths_deg: Vec<f64>,
     /// Keys of the indices asked for, as the table of indices has them; UGR is always computed.
     pub indices: Vec<&'static str>,
     /// Light scene; `None`: the first.

@@ -185,7 +185,7 @@ fn room_row(outcome: &Outcome, room: &RoomOutcome, tally: Tally, lang: Lang, man
         .filter_map(|r| r.margin.filter(|margin| margin.is_finite()).map(|margin| (margin, r)))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let tightest = tightest.map_or("—".to_owned(), |(_, r)| {
-        let text = sentence(lang, r, Naming { room: false, light_scene: false });
+        let text = sentence(lang, r, Naming { room: false, light_scene: false, row: false });
         format!("{} {}", symbol(&text.symbol), text.margin)
     });
     vec![

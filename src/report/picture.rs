@@ -89,6 +89,7 @@ struct ShotRow<'a> {
     view: Option<String>,
     /// Σ L ω cos θ over the picture, lx; the whole E_v where it sees the whole half-space.
     illuminance_lx: Option<f64>,
+    /// Σ L ω / Σ ω over what the projection shows.
     mean_cd_m2: f64,
     max_cd_m2: f64,
     median_relative_error: Option<f64>,
@@ -201,7 +202,7 @@ pub fn files(album: &Album, formats: &[Format], lang: Lang) -> Result<Vec<(Strin
             size: shot.image.size(),
             view: shot.image.view.map(|view| view.to_options()),
             illuminance_lx: shot.image.illuminance_lx(),
-            mean_cd_m2: luminances.iter().sum::<f64>() / luminances.len() as f64,
+            mean_cd_m2: shot.image.mean_cd_m2(),
             max_cd_m2: luminances.iter().copied().fold(0.0, f64::max),
             median_relative_error: shot.median_relative_error(),
             files: names,
@@ -369,5 +370,25 @@ mod tests {
         let json: serde_json::Value = serde_json::from_slice(json).expect("JSON");
         assert_eq!(json["pictures"][0]["blocks"], 64);
         assert_ne!(json["pictures"][0]["interval"], "no interval");
+    }
+
+    /// Catches: a mean that counts the black corners of a fisheye, or its pixels alike.
+    #[test]
+    fn the_mean_is_that_of_what_the_picture_shows() {
+        let mut all = album(false);
+        let image = &mut all.shots[0].image;
+        let view = image.view.expect("a view");
+        let size = image.size();
+        for index in 0..image.luminance_cd_m2.len() {
+            let at = [(index % 40) as f64 + 0.5, (index / 40) as f64 + 0.5];
+            image.luminance_cd_m2[index] =
+                view.direction(size, at).map_or(0.0, |d| 100.0 + 50.0 * d.dot(view.forward()));
+        }
+        // Over a hemisphere the mean of cos θ is ½.
+        let made = files(&all, &[], Lang::En).expect("encoded");
+        let json = &made.iter().find(|(name, _)| name == "views.json").expect("views.json").1;
+        let json: serde_json::Value = serde_json::from_slice(json).expect("JSON");
+        let mean = json["pictures"][0]["mean_cd_m2"].as_f64().expect("a mean");
+        assert!((mean - 125.0).abs() < 0.5, "{mean}");
     }
 }

@@ -1,6 +1,9 @@
 //! A requirement and the verdict of the whole in words: what terminal, page, junit and sarif say
 //! alike. Every interval here is the joint one, by which the verdict was given.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
 use super::number;
 use super::words::{self, Lang, Symbol, Term, phrase, word};
 use crate::outcome::{Bound, NormOutcome, Outcome, Requirement, Verdict};
@@ -32,13 +35,24 @@ pub struct Naming {
     pub room: bool,
     /// Name the light scene.
     pub light_scene: bool,
+    /// Name the row of the norm.
+    pub row: bool,
 }
 
 impl Naming {
-    /// Rooms are named if there are several, light scenes if requirements use several.
+    /// Rooms are named if there are several, light scenes if requirements use several, rows if two ask alike
+    /// of one thing.
     pub fn of(outcome: &Outcome) -> Self {
+        let mut clauses = BTreeMap::new();
+        let mut of_norm =
+            outcome.requirements.iter().filter(|r| r.standard != PROJECT && !r.clause.is_empty());
+        let row = of_norm.any(|r| {
+            let asked = (&r.room, &r.subject, &r.light_scene, r.quantity.key(), r.statistic.key());
+            *clauses.entry(asked).or_insert(&r.clause) != &r.clause
+        });
         let first = outcome.requirements.first().map(|r| r.light_scene.as_str());
         Self {
+            row,
             room: outcome.rooms.len() > 1,
             light_scene: outcome.requirements.iter().any(|r| Some(r.light_scene.as_str()) != first),
         }
@@ -85,7 +99,7 @@ pub fn sentence(lang: Lang, requirement: &Requirement, naming: Naming) -> Senten
     };
     Sentence {
         symbol: words::symbol(lang, quantity, statistic),
-        place: place(requirement, naming),
+        place: place(lang, requirement, naming),
         required: limit_text,
         value,
         interval,
@@ -123,19 +137,22 @@ fn margin(lang: Lang, requirement: &Requirement) -> String {
     }
 }
 
-fn place(requirement: &Requirement, naming: Naming) -> String {
-    let mut parts = Vec::new();
+fn place(lang: Lang, requirement: &Requirement, naming: Naming) -> String {
+    let mut parts: Vec<Cow<'_, str>> = Vec::new();
     // Areas that a norm makes are named after their room already.
     let named =
         requirement.subject.strip_prefix(&requirement.room).is_some_and(|rest| rest.starts_with(" · "));
     if naming.room && !named {
-        parts.push(requirement.room.as_str());
+        parts.push(requirement.room.as_str().into());
     }
     if requirement.subject != requirement.room || !naming.room {
-        parts.push(requirement.subject.as_str());
+        parts.push(words::place_name(lang, &requirement.subject));
+    }
+    if naming.row && requirement.standard != PROJECT && !requirement.clause.is_empty() {
+        parts.push(phrase(lang, Term::RowNumber, &[&requirement.clause]).into());
     }
     if naming.light_scene {
-        parts.push(requirement.light_scene.as_str());
+        parts.push(requirement.light_scene.as_str().into());
     }
     parts.join(" · ")
 }
@@ -285,7 +302,7 @@ pub fn verdict_key(verdict: Verdict) -> &'static str {
 
 /// One English line about a requirement, for logs that machines show to people.
 pub fn line(requirement: &Requirement) -> String {
-    let naming = Naming { room: true, light_scene: true };
+    let naming = Naming { room: true, light_scene: true, row: false };
     let text = sentence(Lang::En, requirement, naming);
     let because = match &requirement.value {
         Ok(_) => String::new(),
@@ -352,5 +369,19 @@ mod tests {
         ] {
             assert_eq!(judged(of_norm, of_project), says);
         }
+    }
+
+    /// Catches: two lines that differ in their verdict alone, because two rows ask alike of one area.
+    #[test]
+    fn rows_are_named_where_two_ask_alike() {
+        let mut outcome = sample::outcome();
+        assert!(!Naming::of(&outcome).row);
+        let first = outcome.requirements[0].clone();
+        outcome.requirements.push(Requirement { clause: "9.9".into(), ..first });
+        let naming = Naming::of(&outcome);
+        let places: Vec<String> =
+            outcome.requirements.iter().map(|r| sentence(Lang::En, r, naming).place).collect();
+        assert!(places.last().is_some_and(|place| place.contains("row 9.9")), "{places:?}");
+        assert_ne!(places.first(), places.last());
     }
 }

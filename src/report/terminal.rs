@@ -160,13 +160,16 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
             let parts = [format!("{from}{unit}"), one_line(&modified.reason)];
             let said = phrase(lang, Term::ModifiedFrom, &[&parts[0], &parts[1]]);
             let symbol = words::symbol(lang, quantity, statistic).text();
-            note(true, format!("{symbol} · {}: {said}", one_line(&requirement.subject)));
+            note(
+                true,
+                format!("{symbol} · {}: {said}", one_line(&words::place_name(lang, &requirement.subject))),
+            );
         }
         if let Some(other) = requirement.other_comparison {
             let subject = format!(
                 "{} · {}",
                 words::symbol(lang, requirement.quantity, requirement.statistic).text(),
-                one_line(&requirement.subject)
+                one_line(&words::place_name(lang, &requirement.subject))
             );
             let said = phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)]);
             note(true, format!("{subject}: {said}"));

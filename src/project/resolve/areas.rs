@@ -40,6 +40,9 @@ pub fn add(
         let span = section.span();
         let section = section.get_ref();
         let name = section.name.get_ref();
+        if name.trim().is_empty() {
+            context.error(&section.name.span(), "the area's name is empty", "");
+        }
         let taken = |draft: &Draft| draft.areas.iter().any(|other| other.name == *name);
         if drafts.iter().any(taken) {
             let message = format!("a second area \"{name}\"");

@@ -170,6 +170,9 @@ fn mean_of(draft: &Draft, part: &[(u32, f64)]) -> Option<f64> {
 fn check_names(sections: &[At<RoomSection>], context: &mut Context) {
     for (index, section) in sections.iter().enumerate() {
         let RoomSection { name, footprint, node, height, floor, reflectances, .. } = section.get_ref();
+        if name.get_ref().trim().is_empty() {
+            context.error(&name.span(), "the room's name is empty", "");
+        }
         let earlier = &sections[..index];
         if earlier.iter().any(|other| other.get_ref().name.get_ref() == name.get_ref()) {
             let message = format!("a second room \"{}\"", name.get_ref());

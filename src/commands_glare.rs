@@ -111,14 +111,13 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
         maps(&project, method(glare))
     };
     // Maps that the project has and nobody computes here, and why.
-    let left_out = project.worlds.iter().any(|world| !world.glare_maps.is_empty()).then(|| {
-        if glare.compare_methods {
-            "glare maps are left out: conventions are compared at viewpoints"
-        } else {
-            "glare maps are left out: they need a field that was mended for them"
-        }
-    });
-    let left_out = left_out.filter(|_| maps.is_empty());
+    let left_out = if glare.compare_methods {
+        "glare maps are left out: conventions are compared at viewpoints"
+    } else {
+        "glare maps are left out: they need a field that was mended for them"
+    };
+    let has_maps = project.worlds.iter().any(|world| !world.glare_maps.is_empty());
+    let left_out = (has_maps && maps.is_empty()).then_some(left_out);
     if observed.is_empty() && maps.is_empty() {
         let what = left_out.map_or("the project has no viewpoint and no glare map".to_owned(), |left_out| {
             format!("the project has no viewpoint; {left_out}")
@@ -130,7 +129,9 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
         if glare.format == GlareFormat::Csv {
             observed.first().into_iter().flat_map(|view| &view.approximations).for_each(|said| remark(said));
             for map in &maps {
-                approximations(map).into_iter().for_each(|said| remark(&format!("{}: {said}", map.name)));
+                for said in approximations(map) {
+                    remark(&format!("{}: {said}", map.name));
+                }
             }
         }
     }

@@ -31,12 +31,20 @@ impl LuminanceImage {
         [self.width, self.height]
     }
 
-    /// Mean luminance in cd/m² of what the projection shows, Σ L ω / Σ ω; of all pixels alike without a view.
+    /// Mean luminance in cd/m² of what the projection shows, Σ L ω / Σ ω over the pixels whose centres lie in it;
+    /// of all pixels alike without a view.
     pub fn mean_cd_m2(&self) -> f64 {
         let (mut light, mut seen_sr) = (0.0, 0.0);
         for (index, luminance) in self.luminance_cd_m2.iter().enumerate() {
             let pixel = [index % self.width, index / self.width];
-            let solid_angle_sr = self.view.map_or(1.0, |view| view.solid_angles_sr(self.size(), pixel)[0]);
+            let centre = pixel.map(|place| place as f64 + 0.5);
+            let solid_angle_sr = match self.view {
+                None => 1.0,
+                Some(view) if view.direction(self.size(), centre).is_some() => {
+                    view.solid_angles_sr(self.size(), pixel)[0]
+                }
+                Some(_) => 0.0,
+            };
             light += luminance * solid_angle_sr;
             seen_sr += solid_angle_sr;
         }

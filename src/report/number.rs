@@ -104,9 +104,9 @@ pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -
     let least = if quantity.is_single() || is_luminance(quantity, statistic) {
         0
     } else {
-        decimals(quantity, statistic, limit) as i32
+        decimals(quantity, statistic, limit)
     };
-    (least..=4).find(exact).map_or(usual, |decimals| fixed(lang, limit, decimals as usize))
+    (0..=4).skip(least).find(exact).map_or(usual, |decimals| fixed(lang, limit, decimals as usize))
 }
 
 fn is_luminance(quantity: Quantity, statistic: Statistic) -> bool {

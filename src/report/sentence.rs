@@ -326,6 +326,7 @@ mod tests {
     /// Catches: a norm that is said to be complied with, or not, by requirements of the project's own.
     #[test]
     fn the_verdict_of_the_whole_names_those_whose_requirements_decide() {
+        use Verdict::{Fail, NotAssessed, Pass, Undecided};
         let all = sample::outcome();
         let judged = |norm: &[Verdict], own: &[Verdict]| {
             let mut outcome = all.clone();
@@ -338,7 +339,6 @@ mod tests {
             outcome.requirements.extend(own.iter().map(|&v| one("project", v)));
             overall(Lang::En, &outcome)
         };
-        use Verdict::{Fail, NotAssessed, Pass, Undecided};
         let own = "the project's own requirements";
         let norm = "EN 12464-1:2021";
         for (of_norm, of_project, says) in [

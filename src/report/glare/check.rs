@@ -65,23 +65,25 @@ const DIGITS: [[u8; DIGIT[1]]; 10] = [
 fn write_number(pixels: &mut [u8], size: [usize; 2], number: usize, centre: [f64; 2], dot: usize) {
     let digits: Vec<usize> = number.to_string().bytes().map(|digit| usize::from(digit - b'0')).collect();
     let dots_across = digits.len() * (DIGIT[0] + 1) - 1;
-    let corner = |at: f64, dots: usize| (at - (dots * dot) as f64 / 2.0).round() as i64;
+    let corner = |at: f64, dots: usize| (at - (dots * dot) as f64 / 2.0).round();
     let start = [corner(centre[0], dots_across), corner(centre[1], DIGIT[1])];
-    let mut fill = |column: i64, row: i64, edge: i64, shade: u8| {
-        for y in (row..row + edge).filter(|y| (0..size[1] as i64).contains(y)) {
-            for x in (column..column + edge).filter(|x| (0..size[0] as i64).contains(x)) {
-                pixels[y as usize * size[0] + x as usize] = shade;
-            }
+    let mut fill = |corner: [f64; 2], edge: f64, shade: u8| {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let within = |at: f64| at.clamp(0.0, size[axis] as f64) as usize;
+            within(corner[axis])..within(corner[axis] + edge)
+        });
+        for row in rows {
+            pixels[row * size[0] + columns.start..row * size[0] + columns.end].fill(shade);
         }
     };
-    let (dot, rim) = (dot as i64, (dot as i64 / 2).max(1));
-    for (shade, wider) in [(0, rim), (GREYS as u8 - 1, 0)] {
+    let rim = (dot / 2).max(1) as f64;
+    for (shade, wider) in [(0, rim), (GREYS as u8 - 1, 0.0)] {
         for (place, &digit) in digits.iter().enumerate() {
             for (row, bits) in DIGITS[digit].iter().enumerate() {
                 for column in (0..DIGIT[0]).filter(|column| bits >> (DIGIT[0] - 1 - column) & 1 == 1) {
-                    let x = start[0] + dot * (place * (DIGIT[0] + 1) + column) as i64 - wider;
-                    let y = start[1] + dot * row as i64 - wider;
-                    fill(x, y, dot + 2 * wider, shade);
+                    let x = start[0] + (dot * (place * (DIGIT[0] + 1) + column)) as f64;
+                    let y = start[1] + (dot * row) as f64;
+                    fill([x - wider, y - wider], dot as f64 + 2.0 * wider, shade);
                 }
             }
         }

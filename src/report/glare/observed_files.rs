@@ -27,7 +27,7 @@ struct View<'a> {
     worst: bool,
     /// What makes UGR doubtful.
     notes: &'a [String],
-    sources: Vec<Source<'a>>,
+    sources: Vec<Glaring<'a>>,
     /// Only where values are not unbiased.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     approximations: Vec<&'a str>,
@@ -43,7 +43,7 @@ struct Value<'a> {
 }
 
 #[derive(Serialize)]
-struct Source<'a> {
+struct Glaring<'a> {
     source: &'a str,
     luminance_cd_m2: f64,
     solid_angle_sr: f64,
@@ -52,7 +52,7 @@ struct Source<'a> {
     share: f64,
 }
 
-impl<'a> From<&'a GlareSourceOutcome> for Source<'a> {
+impl<'a> From<&'a GlareSourceOutcome> for Glaring<'a> {
     fn from(source: &'a GlareSourceOutcome) -> Self {
         Self {
             source: &source.label,
@@ -94,7 +94,7 @@ fn views<'a>(observed: &'a [Observed], maps: &'a [Mapped]) -> impl Iterator<Item
         e_v_lx: Some(view.e_v_lx),
         worst: view.worst,
         notes: &view.notes,
-        sources: view.sources.iter().map(Source::from).collect(),
+        sources: view.sources.iter().map(Glaring::from).collect(),
         approximations: view.approximations.iter().map(String::as_str).collect(),
     });
     of_observers.chain(maps.iter().flat_map(of_map))

@@ -106,13 +106,13 @@ fn without_a_source_in_any_direction_there_is_no_verdict_but_a_reason() {
 #[test]
 fn what_ugr_ignores_still_counts_for_other_indices() {
     let text = "[scene]\nbox = { size = [8, 6, 3], floor = 0.2, walls = 0.5, ceiling = 0.7 }\n\
-                [luminaires.A]\nlambert = { flux = 3600 }\narea = { rect = [1.2, 0.3] }\n\
-                [[place]]\nluminaire = \"A\"\nat = [4, 3, 2.9]\n\
+                [luminaires.A]\nlambert = { flux = 3600 }\narea = { rect = [0.2, 0.2] }\n\
+                [[place]]\nluminaire = \"A\"\nat = [4.2, 3, 2.9]\n\
                 [[viewpoint]]\nname = \"Seat\"\neye = [3.5, 2.4, 1.2]\ndirection = [1, 0, 0]\n\
                 indices = [\"L_veil_SH\", \"E_dir\", \"DGP\"]\n";
     let outcome = run(&format!("{text}{}", require("L_veil_SH", "max = 0.05")), &[], 32, Effort::default());
     let value = |key: &str| values(&outcome, key)[0];
-    let towards = glam::DVec3::new(0.5, 0.6, 1.7).normalize();
+    let towards = glam::DVec3::new(0.7, 0.6, 1.7).normalize();
     let theta_deg = towards.x.acos().to_degrees();
     let expected = 10.0 * value("E_dir") / (theta_deg * theta_deg);
     assert!(

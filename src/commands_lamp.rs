@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::args_lamp::{FarFieldArgs, InfoFormat, Lamp, LintFormat, TableFormat};
 use crate::commands_run::open;
-use crate::{BAD_INPUT, COMPLIES, FAILS, complain, say};
+use crate::{BAD_INPUT, COMPLIES, FAILS, complain, remark, say};
 
 pub fn run(command: &Lamp) -> u8 {
     match command {
@@ -242,6 +242,14 @@ fn far_field(args: &FarFieldArgs, project: &Project) -> Result<u8, String> {
         )
     })?;
     let mut text = String::new();
+    if let Some((apparent_m2, luminous_m2)) = installed::spread(&photometry, &chosen)
+        && !args.run.quiet
+    {
+        remark(&format!(
+            "the file's luminous area is the rectangle around all openings, {apparent_m2:.2} m², of which {luminous_m2:.2} m² \
+             shine: luminance and UGR from this file are too low, illuminance is not concerned"
+        ));
+    }
     if let Some((out, target)) = target {
         let converted = lamp::convert::convert(&photometry, target).map_err(|error| error.to_string())?;
         write_file(out, &converted.bytes).map_err(|error| error.to_string())?;

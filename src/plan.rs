@@ -12,6 +12,8 @@ mod zones;
 
 use glam::DVec3;
 
+pub use hidden::inside_furniture;
+
 use crate::grid::{self, Grid, GridError};
 use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, AreaShape, CustomSubject, Modification, Place, Project, World};

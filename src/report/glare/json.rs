@@ -100,7 +100,7 @@ fn entry(image: &Evaluated) -> Image<'_> {
             number: number + 1,
             right_deg,
             up_deg,
-            off_axis_deg: found.at(1.0).off_axis_deg,
+            off_axis_deg: found.at(1.0, false).off_axis_deg,
             position_index: source.position_index,
             luminance_cd_m2: found.luminance.0,
             highest_cd_m2: found.highest.0,

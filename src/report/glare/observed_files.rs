@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::super::ReportError;
 use crate::observe::Observed;
-use crate::observe::map::{Mapped, approximations};
+use crate::observe::map::{MapMethod, Mapped, approximations};
 use crate::outcome::{GlareSourceOutcome, IndexOutcome, Interval};
 use crate::units::Undefined;
 
@@ -101,6 +101,15 @@ fn views<'a>(observed: &'a [Observed], maps: &'a [Mapped]) -> impl Iterator<Item
 }
 
 fn of_map(map: &Mapped) -> impl Iterator<Item = View<'_>> {
+    // What look-ups scatter by says nothing of what the field errs by.
+    let holds = matches!(map.method, MapMethod::Unbiased(_));
+    let values = move |ugr, further| {
+        let mut values = values(ugr, &[], further);
+        for estimate in values.iter_mut().filter_map(|value| value.estimate.as_mut()).filter(|_| !holds) {
+            (estimate.se, estimate.lo, estimate.hi) = (f64::NAN, f64::NAN, f64::NAN);
+        }
+        values
+    };
     map.eyes.iter().flat_map(move |eye| {
         let worst = eye.worst().map(|(number, _)| number);
         eye.views.iter().enumerate().map(move |(number, (ugr, further))| View {
@@ -111,7 +120,7 @@ fn of_map(map: &Mapped) -> impl Iterator<Item = View<'_>> {
             azimuth_deg: map.azimuths_deg[number],
             tilt_deg: 0.0,
             convention: map.convention.clone(),
-            indices: values(ugr, &[], further),
+            indices: values(ugr, further),
             background_cd_m2: None,
             e_v_lx: None,
             worst: worst == Some(number),

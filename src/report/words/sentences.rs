@@ -248,6 +248,14 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "с площадью проекции более {} м², которые UGR недооценивает",
     ),
     ("no light source is visible", "источники света не видны"),
+    (
+        "all visible sources lie where the CIE 117 table has no position index, so UGR counts none",
+        "все видимые источники лежат там, где в таблице CIE 117 нет индекса позиции: UGR их не учитывает",
+    ),
+    (
+        "a source, or a part of one, lies where the CIE 117 table has no position index: UGR leaves it out, other indices take P by Levin",
+        "источник или его часть лежит там, где в таблице CIE 117 нет индекса позиции: UGR его не учитывает, прочие показатели берут P по Левину",
+    ),
     ("the background luminance is not positive", "яркость фона не положительна"),
     ("a source has no finite luminance", "у источника нет конечной яркости"),
     ("a source has no valid position index", "у источника нет допустимого индекса позиции"),

@@ -311,6 +311,14 @@ impl<'s> Emitters<'s> {
     /// [`Emitters::opening_along`] of a luminaire or an image, as if nothing stood between.
     #[inline]
     pub fn along(&self, source: &Source, origin: DVec3, direction: DVec3) -> Option<(f64, Arrival)> {
+        // Most rays pass it by far: then its ball is missed too.
+        let away = source.position - origin;
+        let squared = away.length_squared();
+        let forward = away.dot(direction);
+        let aside = squared - forward * forward;
+        if aside > 1.000_001 * source.radius_m * source.radius_m + 1e-9 * squared {
+            return None;
+        }
         let into = source.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - source.position), into * direction);
         let Met { distance_m, projected_m2, weight } = source.opening.along(o, d)?;

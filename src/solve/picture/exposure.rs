@@ -68,7 +68,7 @@ pub(super) fn smoothed(scene: &Scene, patches: &Patches, reached: &[Reached], va
         }
     };
     let part = |side: usize| reached[side].middle();
-    Smooth::new(&scene.mesh, &scene.tracer, patches, values, kind, part)
+    Smooth::new(&scene.tracer, patches, values, kind, part)
 }
 
 /// Pictures of a scene from its field as it was stored.

@@ -8,12 +8,14 @@ mod hdr;
 mod luminance_image;
 mod primaries;
 mod projection;
+mod raster;
 mod view_text;
 
 pub use exr::{read as read_exr, write as write_exr};
 pub use hdr::{read as read_hdr, write as write_hdr};
 pub use luminance_image::LuminanceImage;
 pub use projection::{Projection, View};
+pub use raster::Raster;
 pub use view_text::asked as asked_view;
 
 /// Most pixels an image may have: at 8 bytes each they fill half a GiB.

@@ -1,5 +1,7 @@
 //! An image in cd/m², and what an eye at its centre of projection receives.
 
+use rayon::prelude::*;
+
 use super::View;
 
 /// Luminances seen through a view.
@@ -54,14 +56,14 @@ impl LuminanceImage {
     /// Illuminance in lx on the plane of the eye, E_v = Σ L ω cos θ over what lies in front of it;
     /// `None` without a view. It is the whole E_v only if the view sees the whole half-space.
     pub fn illuminance_lx(&self) -> Option<f64> {
-        let view = self.view?;
-        let mut total = 0.0;
-        for row in 0..self.height {
-            for column in 0..self.width {
-                let [_, projected] = view.solid_angles_sr(self.size(), [column, row]);
-                total += self.luminance_cd_m2[row * self.width + column] * projected;
-            }
-        }
-        Some(total)
+        let raster = self.view?.raster(self.size());
+        let of_row = |row: usize| {
+            let line = &self.luminance_cd_m2[row * self.width..(row + 1) * self.width];
+            let seen =
+                |(column, luminance): (usize, &f64)| luminance * raster.solid_angles_sr([column, row])[1];
+            line.iter().enumerate().map(seen).sum::<f64>()
+        };
+        let rows: Vec<f64> = (0..self.height).into_par_iter().map(of_row).collect();
+        Some(rows.iter().sum())
     }
 }

@@ -12,7 +12,6 @@ use glam::DVec3;
 
 use super::covered::place;
 use super::look::{Landing, Sight, Way, add_emission};
-use crate::emitters::Emitters;
 use crate::field::Patches;
 use crate::scene::Scene;
 
@@ -96,7 +95,7 @@ impl Beacons {
         let mut bright: Vec<Bright> = (0..all.len())
             .filter(|&side| all[side] > BRIGHT * mean && patches.area_m2(side) > 0.0)
             .map(|side| {
-                let (middle, front) = patches.centre(&scene.mesh, side);
+                let (middle, front) = patches.centre(side);
                 let normal = if side.is_multiple_of(2) { front } else { -front };
                 let (luminance, area_m2) = (all[side], patches.area_m2(side));
                 Bright { side, middle, normal, area_m2, luminance, beacon: 0, up_to: 0.0 }
@@ -161,7 +160,6 @@ impl Beacons {
     /// Draws a beacon and a point on it; the direction to it, and the patch side.
     pub(super) fn draw(
         &self,
-        emitters: &Emitters,
         patches: &Patches,
         origin: DVec3,
         chances: &Chances,
@@ -175,7 +173,7 @@ impl Beacons {
         let rest = (choice - before) / (chances.up_to[chosen] - before) * members[members.len() - 1].up_to;
         let member = members.partition_point(|bright| bright.up_to <= rest).min(members.len() - 1);
         let side = members[member].side;
-        let point = place(emitters, patches, side, [u, v, w]).point;
+        let point = place(patches, side, [u, v, w]).point;
         ((point - origin).normalize(), side)
     }
 
@@ -368,7 +366,7 @@ mod tests {
             let density = beacons.density(&patches, origin, &chances, &sight) * 4.0 * PI / f64::from(n);
             whole += density;
             by_density += weight(direction) * density;
-            let (direction, side) = beacons.draw(&emitters, &patches, origin, &chances, rng.uniforms());
+            let (direction, side) = beacons.draw(&patches, origin, &chances, rng.uniforms());
             look(&emitters, origin, direction, 1.0, &mut rng, &mut sight);
             assert!(Beacons::came_to(&patches, &sight, side), "all is in sight");
             by_draws += weight(direction) / f64::from(n);

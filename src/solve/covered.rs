@@ -70,7 +70,7 @@ impl Cavities<'_> {
             if probe == PROBES / 2 && lit == 0 && !self.lit[side] {
                 break;
             }
-            let at = place(self.emitters, self.patches, side, places.point(probe, rng));
+            let at = place(self.patches, side, places.point(probe, rng));
             lit += u32::from(self.is_reached(&at, side, rng, &mut sight));
         }
         match lit {
@@ -138,8 +138,8 @@ impl Cavities<'_> {
 }
 
 /// A random place of a patch side, as a ray from above would find it.
-pub(super) fn place(emitters: &Emitters, patches: &Patches, side: usize, u: [f64; 3]) -> Landing {
-    let place = patches.place(&emitters.scene.mesh, side, u);
+pub(super) fn place(patches: &Patches, side: usize, u: [f64; 3]) -> Landing {
+    let place = patches.place(side, u);
     let front = side.is_multiple_of(2);
     let normal = if front { place.normal } else { -place.normal };
     Landing {
@@ -227,7 +227,7 @@ mod tests {
             let patches = Patches::new(&scene.mesh, 0.04, |_| true);
             let lit: Vec<bool> = (0..patches.sides())
                 .map(|side| {
-                    let at = place(&emitters, &patches, side, [0.5; 3]);
+                    let at = place(&patches, side, [0.5; 3]);
                     let cavities =
                         Cavities { emitters: &emitters, patches: &patches, lit: &[], covers: vec![] };
                     (0..4).any(|k| cavities.sees_light(&at, &mut Rng::new(1, 0, (4 * side + k) as u64)))
@@ -247,7 +247,7 @@ mod tests {
                     continue;
                 }
                 for _ in 0..8 {
-                    let at = place(&emitters, &patches, side, rng.uniforms());
+                    let at = place(&patches, side, rng.uniforms());
                     let p = at.point - origin;
                     if p.z > 1e-6 {
                         continue;

@@ -94,7 +94,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let one = |method: Method, effort: Effort, seed: u64| -> Run {
         let prepared = prepare(&world.scene, &demand, method, effort, seed);
         let sheets: Vec<_> = (0..BLOCKS).map(|block| answer(&prepared, block)).collect();
-        let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
+        let answers = Answers::of(&sheets, &world.scene);
         let mut run = Run::new();
         let mut add = |blocks: &[f64]| {
             let estimate = Estimate::from_blocks(blocks);

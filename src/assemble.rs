@@ -196,6 +196,9 @@ fn fine(blocks: &area::Blocks, r: f64) -> bool {
         if estimate.se > 0.0 { estimate.se / estimate.value.abs() } else { 0.0 }
     };
     let count = blocks.values.len().max(1) as f64;
+    if blocks.is_unseen() {
+        return false;
+    }
     let square = blocks.values.iter().map(|point| relative(point).powi(2)).sum::<f64>() / count;
     let statistics = [Statistic::Mean, Statistic::Min, Statistic::Max].map(|s| area::gauge(blocks, s, 0.5));
     let all = statistics.iter().all(|g| g.value.as_ref().map_or(true, |v| !(g.se > r * v.abs())));

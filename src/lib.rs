@@ -209,7 +209,7 @@ fn solve_world(
                 open,
             });
         });
-        let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
+        let answers = Answers::of(&sheets, &world.scene);
         let context = Context {
             project,
             world,

@@ -12,7 +12,7 @@ pub mod view;
 use crate::norm::Light;
 use crate::outcome::Interval;
 use crate::project::{LightScene, Room, World};
-use crate::scene::Channel;
+use crate::scene::{Channel, Scene};
 use crate::solve::{PARTS, Part, Sheet};
 use crate::units::Undefined;
 
@@ -23,6 +23,8 @@ pub struct Answers<'s> {
     pub sheets: &'s [Sheet],
     /// Channels of the scene.
     pub channels: usize,
+    /// Whether there may be light that no block has found: some surface reflects or shines.
+    pub may_hide: bool,
 }
 
 /// A gauged quantity: its value and an interval that errs with a given probability.
@@ -61,7 +63,12 @@ impl Gauged {
     }
 }
 
-impl Answers<'_> {
+impl<'s> Answers<'s> {
+    /// Sheets of a scene.
+    pub fn of(sheets: &'s [Sheet], scene: &Scene) -> Self {
+        Self { sheets, channels: scene.channels.len(), may_hide: scene.returns_light() }
+    }
+
     /// Number of blocks.
     pub fn blocks(&self) -> usize {
         self.sheets.len()
@@ -97,6 +104,17 @@ impl Answers<'_> {
                 values.chunks_exact(PARTS).zip(weights).map(|(parts, w)| w * parts[part as usize]).sum()
             })
             .collect()
+    }
+
+    /// Whether all blocks agree that only direct light arrives where other light may exist: that none was found
+    /// says nothing of how much there is, so such a row has no upper end.
+    pub fn is_unseen(&self, row: usize, weights: &[f64], light: Light) -> bool {
+        let found =
+            |weights: &[f64]| self.part(row, weights, Part::Indirect).iter().any(|value| *value > 0.0);
+        match light {
+            Light::All => self.may_hide && weights.iter().any(|weight| *weight > 0.0) && !found(weights),
+            Light::Direct => false,
+        }
     }
 
     /// Mean over blocks of one part of a row.

@@ -130,7 +130,7 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
     let prepared = prepare(&world.scene, &demand, Method::Links, Effort::default(), seed);
     let sheets: Vec<Sheet> =
         (0..blocks as u64).into_par_iter().map(|block| answer(&prepared, block)).collect();
-    let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
+    let answers = Answers::of(&sheets, &world.scene);
     let first_rows = demand.first_rows();
     let light = |index: usize, number: usize, weights: &[f64], _: &Sighted| {
         view::EyeLight::of_row(&answers, first_rows[index] + number, weights)

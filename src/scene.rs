@@ -197,6 +197,13 @@ impl Scene {
         self.mesh.surfaces.iter().map(|surface| &self.materials[surface.material].bsdf)
     }
 
+    /// Whether some surface scatters or shines, so that there is light besides what luminaires send straight or by
+    /// mirrors.
+    pub fn returns_light(&self) -> bool {
+        let returns = |bsdf: &Bsdf| bsdf.emitted() > 0.0 || bsdf.albedo(1.0) > 0.0 || bsdf.albedo(0.05) > 0.0;
+        self.surfaces().any(|bsdf| bsdf.specular(1.0).is_none() && returns(bsdf))
+    }
+
     /// Whether a surface reflects in a glossy lobe.
     pub fn has_lobes(&self) -> bool {
         self.surfaces().any(|bsdf| bsdf.lobe().is_some())

@@ -238,7 +238,7 @@ fn behind_panes(family: &'static str, panes: u8, angles: &[f64]) -> Vec<Line> {
     for (index, &degrees) in angles.iter().enumerate() {
         let free = 1000.0 / at.distance_squared(place(degrees));
         let direct = row(&sheets, index, &[Part::Direct]);
-        let found = Estimate { value: direct.value / free, se: direct.se / free, n: direct.n };
+        let found = Estimate { value: direct.value / free, se: direct.se / free, ..direct };
         let expected = transmittance(0.88, degrees).powi(i32::from(panes));
         lines.push(Line { family, what: format!("E/E₀ at {degrees}°"), expected, found });
     }
@@ -329,7 +329,7 @@ fn cube() -> Vec<Line> {
         let scene = scene(room(DVec3::splat(4.0)), vec![lambert("wall", rho); 3], lamps);
         let sheets = tally(&scene, 4096, 64);
         let incident = of_flux(&sheets, |flux| flux.incident.iter().sum::<f64>());
-        let found = Estimate { value: (incident.value - lm) / 96.0, se: incident.se / 96.0, n: incident.n };
+        let found = Estimate { value: (incident.value - lm) / 96.0, se: incident.se / 96.0, ..incident };
         let expected = rho * lm / (96.0 * (1.0 - rho));
         lines.push(Line { family: "5.8", what: format!("ρ {rho}, lx"), expected, found });
     }

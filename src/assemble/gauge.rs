@@ -17,6 +17,9 @@ use crate::units::Undefined;
 /// brighter ones would dazzle without the method's knowing. A convention of this program.
 const BRIGHT_SURFACE_CD_M2: f64 = 500.0;
 
+/// Said where blocks agree on what they may all have missed.
+const UNSEEN: &str = "no block has found reflected or emitted light here, though surfaces reflect or shine: there is no upper end";
+
 impl Context<'_> {
     /// Value and joint interval, a note, and a verdict that does not come from comparison.
     pub(super) fn gauge(
@@ -30,7 +33,8 @@ impl Context<'_> {
             Subject::Area(place, quantity) => {
                 let asked = &self.plan.rooms[room].areas[*place].quantities[*quantity];
                 let blocks = self.blocks(asked, planned.light_scene, entry);
-                (area::gauge(&blocks, planned.statistic, alpha), self.condition().note().into(), None)
+                let note = self.noted(&[&blocks]);
+                (area::gauge(&blocks, planned.statistic, alpha), note, None)
             }
             Subject::Viewpoint(viewpoint) => {
                 let (worst, notes) = self.worst_view(room, *viewpoint, planned, alpha);
@@ -44,7 +48,8 @@ impl Context<'_> {
                 let areas = &self.plan.rooms[room].areas;
                 let own = self.blocks(&areas[*place].quantities[*quantity], planned.light_scene, entry);
                 let task = self.blocks(&areas[*task].quantities[*of], planned.light_scene, entry);
-                (area::gauge_of_task(&own, &task, alpha), self.condition().note().into(), None)
+                let note = self.noted(&[&own, &task]);
+                (area::gauge_of_task(&own, &task, alpha), note, None)
             }
             Subject::UgrTable(shr) => {
                 let mut note = format!("table method CIE 190, SHR {shr}, worst direction, initial flux");
@@ -93,6 +98,13 @@ impl Context<'_> {
                 Some(Verdict::NotAssessed),
             ),
         }
+    }
+
+    /// The condition of illuminances, and whether light may be missing in them.
+    fn noted(&self, blocks: &[&area::Blocks]) -> String {
+        let note = self.condition().note();
+        let unseen = blocks.iter().any(|blocks| blocks.is_unseen());
+        if unseen { format!("{note}; {UNSEEN}") } else { note.into() }
     }
 
     /// Largest emergency intensity among the luminaires of a type that hang in a class of heights, initial.

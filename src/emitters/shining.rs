@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::Emitters;
+use super::{Emitters, Mirror};
 use crate::rng::Rng;
 use crate::scene::Channel;
 
@@ -90,15 +90,14 @@ fn shining_in(
         let Some(channel) = scene.channels.iter().position(|c| *c == Channel::Surfaces { material }) else {
             continue;
         };
-        let mut corners = mesh.corners(triangle);
+        let mut parts = vec![mesh.corners(triangle)];
         if let Some(mirror) = mirror {
             let plane = &emitters.mirrors[mirror];
-            let side = |point: DVec3| point.dot(plane.normal) - plane.offset_m;
-            // An image lies behind the plane; one of a surface that reaches through it is left out.
-            if corners.iter().any(|&corner| !(side(corner) * side(eye) > 0.0)) {
-                continue;
-            }
-            corners = corners.map(|corner| plane.image(corner));
+            parts = before(plane, mesh.corners(triangle), eye, scene.tracer.offset_m());
+            parts = parts.iter().map(|part| part.map(|corner| plane.image(corner))).collect();
+        }
+        if parts.is_empty() {
+            continue;
         }
         let index = found.iter().position(|known| known.surface == surface).unwrap_or_else(|| {
             found.push(Shining {
@@ -116,10 +115,34 @@ fn shining_in(
         let item = triangle as u64 + mirror.map_or(0, |mirror| (mirror as u64 + 1) << 32);
         let mut rng = Rng::new(seed, u64::MAX - 1, item);
         let cutter = Cutter { emitters, eye, piece_sr };
-        cutter.cut(corners, [0, DEEPEST], &mut rng, &mut found[index]);
+        for corners in parts {
+            cutter.cut(corners, [0, DEEPEST], &mut rng, &mut found[index]);
+        }
     }
     found.retain(|surface| !surface.pieces.is_empty());
     found
+}
+
+/// The part of a triangle that lies on the eye's side of a plane, in triangles: what touches the plane or reaches
+/// through it has an image as far as it stands before it. What lies in the plane, within `flat_m`, has none.
+fn before(plane: &Mirror, corners: [DVec3; 3], eye: DVec3, flat_m: f64) -> Vec<[DVec3; 3]> {
+    let height_m = |point: DVec3| point.dot(plane.normal) - plane.offset_m;
+    let sign = height_m(eye).signum();
+    let heights = corners.map(|corner| sign * height_m(corner));
+    if !(height_m(eye).abs() > 0.0 && heights.iter().any(|height| *height > flat_m)) {
+        return Vec::new();
+    }
+    let mut outline = Vec::with_capacity(4);
+    for (index, (&corner, &height)) in corners.iter().zip(&heights).enumerate() {
+        let (next, next_height) = (corners[(index + 1) % 3], heights[(index + 1) % 3]);
+        if height >= 0.0 {
+            outline.push(corner);
+        }
+        if height * next_height < 0.0 {
+            outline.push(corner + (next - corner) * (height / (height - next_height)));
+        }
+    }
+    (2..outline.len()).map(|third| [outline[0], outline[third - 1], outline[third]]).collect()
 }
 
 struct Cutter<'e> {
@@ -243,6 +266,47 @@ mod tests {
         // An opaque plate over all of it: nothing is seen.
         let hidden = scene(1.0);
         assert!(shining_from(&Emitters::new(&hidden), DVec3::ZERO, 1).is_empty());
+    }
+
+    /// A luminous strip that stands upright from z = `from_m` to 1, one metre before an eye, over a mirror at z = 0.
+    fn above_a_mirror(from_m: f64) -> f64 {
+        let mut mesh = Mesh::default();
+        let strip = mesh.add_surface("Strip", 0, false);
+        let p = |y: f64, z: f64| DVec3::new(1.0, y, z);
+        mesh.add_quad([p(-0.5, from_m), p(0.5, from_m), p(0.5, 1.0), p(-0.5, 1.0)], strip);
+        let mirror = mesh.add_surface("Mirror", 1, false);
+        mesh.add_quad(
+            [[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0], [-5.0, 5.0]].map(|[x, y]| DVec3::new(x, y, 0.0)),
+            mirror,
+        );
+        let emitter = Bsdf::Emitter { luminance_cd_m2: 1000.0, reflectance: 0.0 };
+        let materials = vec![
+            Material { name: "Bright".into(), bsdf: emitter },
+            Material { name: "Mirror".into(), bsdf: Bsdf::Mirror { reflectance: 0.9 } },
+        ];
+        let scene = Scene::new(mesh, materials, Vec::new()).unwrap();
+        let seen = shining_from(&Emitters::new(&scene), DVec3::new(0.0, 0.0, 0.5), 1);
+        let images = seen.iter().filter(|surface| surface.mirror.is_some());
+        images.flat_map(|surface| &surface.pieces).map(|piece| piece.visible_sr).sum()
+    }
+
+    /// Catches: the image of a surface that stands on a mirror, or reaches through it, left out or taken too large.
+    #[test]
+    fn what_stands_on_a_mirror_is_mirrored_whole() {
+        let before = above_a_mirror(1e-3);
+        assert!(before > 0.3, "{before}");
+        for from_m in [0.0, -1e-12, -0.7] {
+            let here = above_a_mirror(from_m);
+            assert!((here / before - 1.0).abs() < 0.01, "{from_m}: {here} is not {before}");
+        }
+        let plane = |z: f64| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, z));
+        let scene = scene(0.5);
+        let mirror = &super::super::planes(&scene, 1, |_| true)[0];
+        let eye = mirror.normal * (mirror.offset_m + 2.0);
+        let height = |z: f64| mirror.normal.z.signum() * z + mirror.normal.z * mirror.offset_m;
+        assert!(super::before(mirror, plane(height(0.0)), eye, 1e-6).is_empty(), "in the plane");
+        assert_eq!(super::before(mirror, plane(height(1.0)), eye, 1e-6).len(), 1);
+        assert!(super::before(mirror, plane(height(-1.0)), eye, 1e-6).is_empty(), "behind it");
     }
 
     #[test]

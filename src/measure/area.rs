@@ -18,29 +18,43 @@ pub struct Blocks {
     pub index: Vec<usize>,
     /// Block values.
     pub values: Vec<Vec<f64>>,
+    /// Whether there may be light at the point that no block has found ([`Answers::is_unseen`]).
+    pub unseen: Vec<bool>,
+}
+
+impl Blocks {
+    /// Whether no point's blocks have found light that may exist: what is known is then a lower end only.
+    pub fn is_unseen(&self) -> bool {
+        !self.unseen.is_empty() && self.unseen.iter().all(|unseen| *unseen)
+    }
 }
 
 /// Block values of a planned quantity. A ratio is linearised about its estimate, so that means and
 /// errors are those of the ratio to first order.
 pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64], light: Light) -> Blocks {
-    let mut blocks = Blocks { index: Vec::new(), values: Vec::new() };
+    let mut blocks = Blocks { index: Vec::new(), values: Vec::new(), unseen: Vec::new() };
     for (index, rows) in entry.rows.iter().enumerate() {
-        let values = match *rows {
+        let (values, unseen) = match *rows {
             None => continue,
-            Some(Rows::One(row)) => answers.counted(row, weights, light),
+            Some(Rows::One(row)) => {
+                (answers.counted(row, weights, light), answers.is_unseen(row, weights, light))
+            }
             Some(Rows::Ratio(above, below)) => {
+                let unseen = [above, below].iter().any(|&row| answers.is_unseen(row, weights, light));
                 let (x, y) = (answers.counted(above, weights, light), answers.counted(below, weights, light));
                 let pair = Pair::from_blocks(&x, &y);
-                if pair.y > 0.0 {
+                let values = if pair.y > 0.0 {
                     let ratio = pair.x / pair.y;
                     x.iter().zip(&y).map(|(x, y)| ratio + (x - ratio * y) / pair.y).collect()
                 } else {
                     vec![f64::NAN; x.len()]
-                }
+                };
+                (values, unseen)
             }
         };
         blocks.index.push(index);
         blocks.values.push(values);
+        blocks.unseen.push(unseen);
     }
     blocks
 }
@@ -55,9 +69,9 @@ pub fn points(
 ) -> Vec<Option<PointValue>> {
     let blocks = blocks(answers, entry, weights, light);
     let mut points = vec![None; entry.rows.len()];
-    for (index, values) in blocks.index.iter().zip(&blocks.values) {
+    for ((index, values), unseen) in blocks.index.iter().zip(&blocks.values).zip(&blocks.unseen) {
         let estimate = Estimate::from_blocks(values);
-        let (lo, hi) = estimate.interval(alpha);
+        let (lo, hi) = opened(estimate.interval(alpha), *unseen);
         let direct = match entry.rows[*index] {
             Some(Rows::One(row)) => answers.part_mean(row, weights, Part::Direct),
             _ => f64::NAN,
@@ -85,7 +99,7 @@ pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
     match statistic {
         Statistic::Mean => {
             let estimate = Estimate::from_blocks(&mean_blocks(blocks));
-            let (lo, hi) = estimate.interval(alpha);
+            let (lo, hi) = opened(estimate.interval(alpha), blocks.is_unseen());
             Gauged { value: Ok(estimate.value), se: estimate.se, lo, hi, place: None }
         }
         Statistic::Min => extreme(blocks, alpha, 1.0),
@@ -99,6 +113,11 @@ pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
     }
 }
 
+/// An interval without its upper end where light may be unseen.
+fn opened((lo, hi): (f64, f64), unseen: bool) -> (f64, f64) {
+    (lo, if unseen { f64::INFINITY } else { hi })
+}
+
 /// Mean over an area divided by the mean over its task area, by Fieller's interval.
 pub fn gauge_of_task(own: &Blocks, task: &Blocks, alpha: f64) -> Gauged {
     if own.values.is_empty() || task.values.is_empty() {
@@ -109,7 +128,13 @@ pub fn gauge_of_task(own: &Blocks, task: &Blocks, alpha: f64) -> Gauged {
         return Gauged::undefined(Undefined::because("no light arrives on the task area: 0/0"));
     }
     let ratio = pair.ratio();
-    let (lo, hi) = pair.ratio_interval(alpha);
+    let (mut lo, mut hi) = pair.ratio_interval(alpha);
+    if own.is_unseen() {
+        hi = f64::INFINITY;
+    }
+    if task.is_unseen() {
+        lo = lo.min(0.0);
+    }
     Gauged { value: Ok(ratio.value), se: ratio.se, lo, hi, place: None }
 }
 
@@ -126,14 +151,16 @@ fn extreme(blocks: &Blocks, alpha: f64, sign: f64) -> Gauged {
     let corrected = alpha / blocks.values.len() as f64;
     let (mut value, mut se, mut place) = (f64::INFINITY, 0.0, 0);
     let (mut lo, mut hi) = (f64::INFINITY, f64::INFINITY);
-    for (index, values) in blocks.values.iter().enumerate() {
+    for (at, values) in blocks.values.iter().enumerate() {
         let estimate = Estimate::from_blocks(values);
         let signed = Estimate { value: sign * estimate.value, ..estimate };
         if signed.value < value {
-            (value, se, place) = (signed.value, estimate.se, blocks.index[index]);
+            (value, se, place) = (signed.value, estimate.se, blocks.index[at]);
         }
-        lo = lo.min(signed.interval(alpha).0);
-        hi = hi.min(signed.interval(corrected).1);
+        // Unseen light raises the point: upwards there is no end, which for a maximum is the lower one here.
+        let is_open = |towards: f64| blocks.unseen[at] && sign * towards > 0.0;
+        lo = lo.min(if is_open(-1.0) { f64::NEG_INFINITY } else { signed.interval(alpha).0 });
+        hi = hi.min(if is_open(1.0) { f64::INFINITY } else { signed.interval(corrected).1 });
     }
     let (lo, hi) = if sign > 0.0 { (lo, hi) } else { (-hi, -lo) };
     Gauged { value: Ok(sign * value), se, lo, hi, place: Some(place) }
@@ -156,7 +183,11 @@ fn uniformity(blocks: &Blocks, alpha: f64) -> Gauged {
             least = Some((ratio.value, ratio.se, blocks.index[index]));
         }
         lo = lo.min(pair.ratio_interval(alpha).0);
-        hi = hi.min(pair.ratio_interval(corrected).1);
+        hi = hi.min(if blocks.unseen[index] { 1.0 } else { pair.ratio_interval(corrected).1 });
+    }
+    // Light that no block has found may fall on any of the points.
+    if blocks.is_unseen() {
+        lo = 0.0;
     }
     let (value, se, place) = least.expect("an area has points here");
     // A minimum of illuminances lies between 0 and their mean; an interval says no more than that.
@@ -191,7 +222,7 @@ mod tests {
             .iter()
             .map(|t| (0..blocks).map(|_| t + sd * 12f64.sqrt() * (rng.uniform() - 0.5)).collect())
             .collect();
-        Blocks { index: (0..truth.len()).collect(), values }
+        Blocks { index: (0..truth.len()).collect(), values, unseen: vec![false; truth.len()] }
     }
 
     #[test]
@@ -219,6 +250,43 @@ mod tests {
         assert!((of(Statistic::U0) - 0.5).abs() < 1e-12);
         assert!((of(Statistic::Ud) - 1.0 / 3.0).abs() < 1e-12);
         assert_eq!(gauge(&blocks, Statistic::Min, 0.05).place, Some(0));
+    }
+
+    /// Catches: blocks that agree on what all of them missed taken for certainty.
+    #[test]
+    fn what_no_block_has_found_has_no_upper_end() {
+        let known = noisy(&[3.0, 5.0], 0.0, 32, 1);
+        let unseen = Blocks { unseen: vec![true; 2], ..known.clone() };
+        for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max] {
+            let (known, unseen) = (gauge(&known, statistic, 0.05), gauge(&unseen, statistic, 0.05));
+            assert!((unseen.lo - known.lo).abs() < 1e-12 && unseen.hi.is_infinite(), "{unseen:?}");
+            assert!(known.hi < 6.0, "the twin is certain: {known:?}");
+        }
+        let ratio = gauge(&unseen, Statistic::U0, 0.05);
+        assert!(ratio.lo.abs() < 1e-12 && (ratio.hi - 1.0).abs() < 1e-12, "{ratio:?}");
+        let diversity = gauge(&unseen, Statistic::Ud, 0.05);
+        assert!(diversity.lo <= 0.0 && diversity.hi.is_infinite(), "{diversity:?}");
+        // One point of several: the least may be higher than it seems, the mean has its own noise.
+        let one = Blocks { unseen: vec![true, false], ..known };
+        assert!((gauge(&one, Statistic::Min, 0.05).hi - 5.0).abs() < 1e-12);
+        assert!(gauge(&one, Statistic::Max, 0.05).hi.is_infinite());
+    }
+
+    /// Catches: darkness where light may exist taken for certain, or certain darkness for doubt.
+    #[test]
+    fn light_that_may_exist_is_told_from_light_that_cannot() {
+        let sheet =
+            |indirect: f64| crate::solve::Sheet { values: vec![4.0, 0.0, indirect], ..Default::default() };
+        let sheets = |found: [f64; 2]| found.map(sheet);
+        let is_unseen = |found: [f64; 2], may_hide: bool, weight: f64, light: Light| {
+            let sheets = sheets(found);
+            Answers { sheets: &sheets, channels: 1, may_hide }.is_unseen(0, &[weight], light)
+        };
+        assert!(is_unseen([0.0, 0.0], true, 1.0, Light::All));
+        assert!(!is_unseen([0.0, 1e-9], true, 1.0, Light::All), "one block has found some");
+        assert!(!is_unseen([0.0, 0.0], false, 1.0, Light::All), "nothing returns light");
+        assert!(!is_unseen([0.0, 0.0], true, 0.0, Light::All), "all is switched off");
+        assert!(!is_unseen([0.0, 0.0], true, 1.0, Light::Direct), "direct light is all that counts");
     }
 
     #[test]

@@ -118,7 +118,9 @@ pub fn glare(
         e_direct_lx: Some(from_luminaires.se.hypot(surfaces_se)),
         sources: found.counted.iter().map(|counted| counted.error).collect(),
     };
-    let gauge = |index: &Index| gauge(index, &sight, &error, indirect.n, alpha);
+    // What is skewed in the eye's light makes every index that rests on it as much less certain.
+    let widening = indirect.widening(alpha).max(from_luminaires.widening(alpha));
+    let gauge = |index: &Index| gauge(index, &sight, &error, indirect.n, [alpha, widening]);
     let ugr_row = parse("UGR").expect("the table of indices begins with UGR");
     let indices = asked.indices.iter().filter(|key| **key != "UGR").filter_map(|key| parse(key));
     let mut notes = found.notes;
@@ -164,15 +166,21 @@ fn term(source: &GlareSource) -> f64 {
     ugr(&[*source], Nits(0.25)).map_or(0.0, |index| 10f64.powf(index / 8.0))
 }
 
-/// An index with Student's interval about it.
-fn gauge(index: &Index, sight: &Sight, error: &SightError, blocks: usize, alpha: f64) -> Gauged {
+/// An index with Student's interval about it, so many times as wide.
+fn gauge(
+    index: &Index,
+    sight: &Sight,
+    error: &SightError,
+    blocks: usize,
+    [alpha, widening]: [f64; 2],
+) -> Gauged {
     let value = (index.value)(sight);
     let spread =
         value.clone().and_then(|_| standard_error(index.value, sight, error, blocks.saturating_sub(1)));
     match (value, spread) {
         (Err(reason), _) | (Ok(_), Err(reason)) => Gauged::undefined(reason),
         (Ok(value), Ok(Spread { se, degrees })) => {
-            let half = if se > 0.0 { quantile(1.0 - 0.5 * alpha, degrees) * se } else { 0.0 };
+            let half = if se > 0.0 { widening * quantile(1.0 - 0.5 * alpha, degrees) * se } else { 0.0 };
             Gauged { value: Ok(value), se, lo: value - half, hi: value + half, place: None }
         }
     }

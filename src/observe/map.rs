@@ -204,7 +204,7 @@ pub(super) fn from_luminaires(
         value += weight * whole;
         variance += (weight * one.normal_lx.se * one.direction.dot(gaze).max(0.0)).powi(2);
     }
-    Estimate { value, se: f64::sqrt(variance), n: 0 }
+    Estimate { value, se: f64::sqrt(variance), n: 0, skew: 0.0 }
 }
 
 /// The eyes of all maps of a world from blocks of unbiased answers.
@@ -234,7 +234,7 @@ pub fn unbiased_at(
     let prepared = prepare(&world.scene, &demand, Method::Links, effort, seed);
     let sheets: Vec<Sheet> =
         (0..blocks as u64).into_par_iter().map(|block| answer(&prepared, block)).collect();
-    let answers = Answers { sheets: &sheets, channels: world.scene.channels.len() };
+    let answers = Answers::of(&sheets, &world.scene);
     let (first_rows, emitters) = (demand.first_rows(), prepared.emitters());
     let alpha = 1.0 - project.accuracy.confidence;
     let convention = Convention::default();

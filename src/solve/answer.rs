@@ -10,7 +10,7 @@
 //! from one diffuse place to the next: a look along a ray returns all places it leads to, each of
 //! weight 1 on average times what reflects it there, and the luminaires met or reflected on the way.
 
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
 
@@ -126,7 +126,7 @@ fn answer_receiver(
     let mut chances = std::mem::take(&mut desk.chances);
     let response = |direction| kernels.iter().map(|kernel| kernel.response(direction)).sum();
     prepared.highlights.about(emitters, origin, response, &mut bundles);
-    prepared.beacons.about(origin, response, kernels.len(), &mut chances);
+    prepared.beacons.about(origin, response, kernels.len(), None, &mut chances);
     let guided = if bundles.is_empty() { 0 } else { effort.highlights };
     let aimed = if chances.is_empty() { 0 } else { effort.beacons };
     let aimed_walks = aimed.min(walks);
@@ -369,7 +369,9 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
     if !(transmittance > 0.0) {
         prepared.highlights.about(emitters, here.origin(scene, true), scattered, &mut bundles);
     }
-    prepared.beacons.about(here.point, scattered, 1, &mut chances);
+    // The field's luminance here is albedo/π times what comes: ∫ scattered · L dω = π L̃/albedo.
+    let known = PI * stored(prepared, &here).iter().sum::<f64>() / albedo;
+    prepared.beacons.about(here.point, scattered, 1, Some(known), &mut chances);
     let patches = field(prepared).patches();
     let looks = effort.looks.max(1);
     let guided = u32::from(!bundles.is_empty());

@@ -1,7 +1,8 @@
 //! Beacons: the few bright patches from which much of the light comes, where rays that follow a response
 //! or a cosine find them by chance – the spot under a lamp that almost touches a wall, one lit corner of a
-//! dark hall. Points drawn on them are *added* to the rays, and every ray is weighted by the sum of all
-//! densities, so a wrong choice costs noise and nothing else.
+//! dark hall – and luminous surfaces always: no luminaire's direct light is there to find them. Points drawn on
+//! them are *added* to the rays, and every ray is weighted by the sum of all densities, so a wrong choice costs
+//! noise and nothing else.
 //!
 //! A ray drawn to a beacon counts if it arrives there straight, through panes at most; what it sees otherwise is
 //! left to the other rays, which then have the weight of their own density alone.
@@ -11,9 +12,10 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::covered::place;
-use super::look::{Landing, Sight, Way, add_emission};
+use super::look::{Landing, Sight, Way};
 use crate::field::Patches;
 use crate::scene::Scene;
+use crate::sphere;
 
 /// The field is uneven enough if the mean square of its luminance is this many times its squared mean.
 const UNEVEN: f64 = 8.0;
@@ -21,9 +23,12 @@ const UNEVEN: f64 = 8.0;
 const BRIGHT: f64 = 4.0;
 /// Bright patches are taken together until there are this many beacons.
 const MOST: usize = 32;
-/// A receiver aims at beacons if they make the square of what its own rays find this many times as large
-/// as the squared mean.
+/// A place aims at beacons if they make the square of what its own rays find this many times as large as the
+/// squared mean: of all light that comes to it or, where they shine of themselves, of theirs alone, since a light
+/// scene may have nothing else.
 const RARE: f64 = 2.0;
+/// Rays by which a luminous side looks for what lies before it.
+const BEFORE: u32 = 8;
 /// Not a beacon.
 const NONE: u32 = u32::MAX;
 
@@ -35,8 +40,10 @@ pub(super) struct Beacons {
     bright: Vec<Bright>,
     /// Per patch side: its place in `bright`, or `NONE`; empty without beacons.
     place: Vec<u32>,
-    /// Mean luminance of all patch sides, channels summed.
+    /// Mean luminance of all patch sides, channels summed …
     mean: f64,
+    /// … and without what beacons add to it.
+    others: f64,
 }
 
 /// Bright patches that lie together and face one way.
@@ -44,20 +51,28 @@ pub(super) struct Beacons {
 struct Beacon {
     first: usize,
     last: usize,
-    middle: DVec3,
+    /// Its middle and the corners of the box round it, each with its share: near its own plane, or where a
+    /// response ends, the middle alone says nothing.
+    places: [(DVec3, f64); 5],
     normal: DVec3,
     area_m2: f64,
     luminance: f64,
+    /// The part of the luminance that it emits.
+    emitted: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Bright {
     side: usize,
     middle: DVec3,
+    /// The box round it.
+    box_m: [DVec3; 2],
     normal: DVec3,
     area_m2: f64,
     /// Channels summed.
     luminance: f64,
+    /// The part of it that is emitted.
+    emitted: f64,
     beacon: usize,
     /// Luminance times area up to here, of its beacon.
     up_to: f64,
@@ -80,27 +95,29 @@ pub(super) struct Chances {
 }
 
 impl Beacons {
-    /// Chooses the beacons of a field; none where it is even. `stored` is the luminance of a patch side
-    /// without what it emits itself, channels summed.
+    /// Chooses the beacons of a field: what shines, and what is bright where it is uneven. `stored` is the
+    /// luminance of a patch side without what it emits itself, channels summed.
     pub(super) fn new(scene: &Scene, patches: &Patches, stored: impl Fn(usize) -> f64) -> Self {
-        let mut emitted = vec![0.0; scene.channels.len()];
-        let all: Vec<f64> = (0..patches.sides())
-            .map(|side| {
-                emitted.fill(0.0);
-                add_emission(scene, patches.triangle(side), &mut emitted, 1.0);
-                stored(side) + emitted.iter().sum::<f64>()
-            })
-            .collect();
-        let Some(mean) = mean_of_uneven(patches, |side| all[side]) else { return Self::default() };
+        let emitted = shining(scene, patches);
+        let all: Vec<f64> = (0..patches.sides()).map(|side| stored(side) + emitted[side]).collect();
+        let Evenness { mean, is_uneven } = Evenness::of(patches, |side| all[side]);
         let mut bright: Vec<Bright> = (0..all.len())
-            .filter(|&side| all[side] > BRIGHT * mean && patches.area_m2(side) > 0.0)
+            .filter(|&side| emitted[side] > 0.0 || (is_uneven && all[side] > BRIGHT * mean))
+            .filter(|&side| patches.area_m2(side) > 0.0)
             .map(|side| {
                 let (middle, front) = patches.centre(side);
                 let normal = if side.is_multiple_of(2) { front } else { -front };
-                let (luminance, area_m2) = (all[side], patches.area_m2(side));
-                Bright { side, middle, normal, area_m2, luminance, beacon: 0, up_to: 0.0 }
+                let (luminance, area_m2, emitted) = (all[side], patches.area_m2(side), emitted[side]);
+                let box_m = patches
+                    .outlines(side / 2)
+                    .flatten()
+                    .fold([middle; 2], |[low, high], corner| [low.min(corner), high.max(corner)]);
+                Bright { side, middle, box_m, normal, area_m2, luminance, emitted, beacon: 0, up_to: 0.0 }
             })
             .collect();
+        let whole_m2: f64 = (0..patches.sides()).map(|side| patches.area_m2(side)).sum();
+        let of_bright: f64 = bright.iter().map(|bright| bright.luminance * bright.area_m2).sum();
+        let others = (mean - of_bright / whole_m2).max(0.0);
         let list = gather(&mut bright);
         let mut place = vec![NONE; patches.sides()];
         for (beacon, entry) in list.iter().enumerate() {
@@ -111,16 +128,18 @@ impl Beacons {
                 place[bright[at].side] = at as u32;
             }
         }
-        Self { list, bright, place, mean }
+        Self { list, bright, place, mean, others }
     }
 
     /// Fills `chances` with the chances of beacons as seen from `origin`; with none where rays that follow
-    /// `response` find their light well enough. The response is the sum of `kernels`, each of integral π.
+    /// `response` find their light well enough. The response is the sum of `kernels`, each of integral π;
+    /// `known` is ∫ response · L dω of all light, where the field knows it.
     pub(super) fn about(
         &self,
         origin: DVec3,
         response: impl Fn(DVec3) -> f64,
         kernels: usize,
+        known: Option<f64>,
         chances: &mut Chances,
     ) {
         chances.clear();
@@ -128,27 +147,36 @@ impl Beacons {
             return;
         }
         let (mut total, mut squares) = (0.0, 0.0);
+        let (mut emitted, mut emitted_squares) = (0.0, 0.0);
         for beacon in &self.list {
-            let away = beacon.middle - origin;
-            let squared = away.length_squared();
-            let towards = away / squared.sqrt();
-            let facing = -beacon.normal.dot(towards);
             let mut light = 0.0;
-            if facing > 0.0 {
-                // Near a beacon its middle says little: its solid angle is at most about 2π.
-                let solid_angle = facing * beacon.area_m2 / (squared + beacon.area_m2 / TAU);
-                light = response(towards).max(0.0) * solid_angle * beacon.luminance;
+            for (place, share) in beacon.places {
+                let away = place - origin;
+                let squared = away.length_squared();
+                let towards = away / squared.sqrt();
+                let facing = -beacon.normal.dot(towards);
+                if facing > 0.0 {
+                    // Near a beacon a place says little: its solid angle is at most about 2π.
+                    let solid_angle = facing * beacon.area_m2 / (squared + beacon.area_m2 / TAU);
+                    light += share * response(towards).max(0.0) * solid_angle * beacon.luminance;
+                }
             }
             if light > 0.0 && light.is_finite() {
                 total += light;
                 squares += light * beacon.luminance;
+                let own = light * beacon.emitted / beacon.luminance;
+                emitted += own;
+                emitted_squares += own * beacon.emitted;
             }
             chances.up_to.push(total);
         }
         // Rays by a response of integral nπ have density R/nπ: their mean square is ∫ nπ R L².
         let whole = PI * kernels as f64;
-        let mean = total + whole * self.mean;
-        if !(whole * squares > RARE * mean * mean) {
+        // Hidden beacons add nothing to what is known, which may therefore be less than they seem to give.
+        let guess = total + whole * self.others;
+        let mean = known.map_or(guess, |known| known.min(guess));
+        let is_rare = |squares: f64, mean: f64| squares > 0.0 && whole * squares > RARE * mean * mean;
+        if !(is_rare(squares, mean) || is_rare(emitted_squares, emitted)) {
             chances.clear();
             return;
         }
@@ -222,16 +250,45 @@ impl Beacons {
     }
 }
 
-/// Mean luminance, if the luminance is so uneven that few patches make most of the light.
-pub(super) fn mean_of_uneven(patches: &Patches, luminance: impl Fn(usize) -> f64) -> Option<f64> {
-    let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
-    for side in 0..patches.sides() {
-        let (area_m2, luminance) = (patches.area_m2(side), luminance(side));
-        area += area_m2;
-        sum += area_m2 * luminance;
-        squares += area_m2 * luminance * luminance;
+/// Luminance that each patch side emits, cd/m²: 0 where nothing lies before it, as outside of a room's walls.
+pub(super) fn shining(scene: &Scene, patches: &Patches) -> Vec<f64> {
+    let seen = |side: usize| {
+        let (middle, front) = patches.centre(side);
+        let normal = if side.is_multiple_of(2) { front } else { -front };
+        let frame = sphere::frame(normal);
+        let origin = middle + normal * scene.tracer.offset_m();
+        (0..BEFORE).any(|number| {
+            let u = [(f64::from(number) + 0.5) / f64::from(BEFORE), f64::from(number) * 0.618_034 % 1.0];
+            scene.tracer.closest(origin, frame * sphere::cosine_hemisphere(u), &[]).is_some()
+        })
+    };
+    let emitted = |side: usize| {
+        let emitted = scene.bsdf(patches.triangle(side)).emitted();
+        if emitted > 0.0 && seen(side) { emitted } else { 0.0 }
+    };
+    (0..patches.sides()).map(emitted).collect()
+}
+
+/// How even luminances of patch sides are.
+pub(super) struct Evenness {
+    /// Their mean.
+    mean: f64,
+    /// Few patches make most of the light.
+    pub is_uneven: bool,
+}
+
+impl Evenness {
+    /// Of all sides.
+    pub(super) fn of(patches: &Patches, luminance: impl Fn(usize) -> f64) -> Self {
+        let (mut area, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        for side in 0..patches.sides() {
+            let (area_m2, luminance) = (patches.area_m2(side), luminance(side));
+            area += area_m2;
+            sum += area_m2 * luminance;
+            squares += area_m2 * luminance * luminance;
+        }
+        Self { mean: sum / area, is_uneven: squares * area > UNEVEN * sum * sum }
     }
-    (squares * area > UNEVEN * sum * sum).then_some(sum / area)
 }
 
 /// Sorts bright patches into groups of one facing that lie together: the group with the most light spread
@@ -286,13 +343,28 @@ impl Beacon {
         let light = |bright: &Bright| bright.luminance * bright.area_m2;
         let whole: f64 = bright.iter().map(light).sum();
         let area_m2 = bright.iter().map(|bright| bright.area_m2).sum();
+        let middle = bright.iter().map(|bright| bright.middle * light(bright)).sum::<DVec3>() / whole;
+        let [low, high] = bright
+            .iter()
+            .fold([middle; 2], |[low, high], bright| [low.min(bright.box_m[0]), high.max(bright.box_m[1])]);
+        // A beacon is about flat: its corners lie across the two longest edges of its box.
+        let size = (high - low).to_array();
+        let thin = (0..3).min_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+        let corner = |number: usize| {
+            let mut place = middle;
+            for (bit, axis) in [(thin + 1) % 3, (thin + 2) % 3].into_iter().enumerate() {
+                place[axis] = if (number >> bit) & 1 == 0 { low[axis] } else { high[axis] };
+            }
+            (place, 0.125)
+        };
         Self {
             first,
             last: first + bright.len(),
-            middle: bright.iter().map(|bright| bright.middle * light(bright)).sum::<DVec3>() / whole,
+            places: [(middle, 0.5), corner(0), corner(1), corner(2), corner(3)],
             normal: bright.iter().map(|bright| bright.normal * light(bright)).sum::<DVec3>() / whole,
             area_m2,
             luminance: whole / area_m2,
+            emitted: bright.iter().map(|bright| bright.emitted * bright.area_m2).sum::<f64>() / area_m2,
         }
     }
 }
@@ -317,7 +389,6 @@ mod tests {
     use crate::material::{Bsdf, Material};
     use crate::rng::Rng;
     use crate::solve::look::look;
-    use crate::sphere;
 
     /// A dark floor, and over it two tiles that shine down, one brighter.
     fn tiles() -> Scene {
@@ -353,7 +424,7 @@ mod tests {
         let beacons = Beacons::new(&scene, &patches, |_| 0.0);
         let origin = DVec3::new(0.2, 0.1, 0.3);
         let mut chances = Chances::default();
-        beacons.about(origin, |direction| direction.z.max(0.0), 1, &mut chances);
+        beacons.about(origin, |direction| direction.z.max(0.0), 1, None, &mut chances);
         assert!(!chances.is_empty() && beacons.list.len() > 1);
         let (mut rng, mut sight) = (Rng::new(1, 2, 3), Sight::new(scene.channels.len()));
         let weight = |direction: DVec3| direction * direction.x.max(0.0);

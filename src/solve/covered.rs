@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::aims::Aims;
 use super::look::{Landing, Sight, Way, look};
 use crate::emitters::Emitters;
 use crate::field::Patches;
@@ -20,6 +21,8 @@ const PROBES: u32 = 8;
 /// Walks from a place, and their steps: it is dark if none of them comes to light, nor itself is lit.
 const WALKS: u32 = 2;
 const STEPS: u32 = 6;
+/// Rays by which a place looks for luminous surfaces.
+const GLANCES: u32 = 8;
 /// First item of the random numbers of probes; below are those of patch sides.
 const ITEM: u64 = 1 << 40;
 
@@ -38,7 +41,9 @@ pub(super) enum Cover {
 pub(super) struct Cavities<'a> {
     pub emitters: &'a Emitters<'a>,
     pub patches: &'a Patches,
-    /// Per patch side, whether any sample of its direct light saw a luminaire.
+    /// Luminous surfaces, aimed at by their light.
+    pub glow: Option<&'a Aims>,
+    /// Per patch side, whether any sample of its direct light saw a luminaire or a luminous surface.
     pub lit: &'a [bool],
     /// Per patch side; empty until it is known.
     pub covers: Vec<Cover>,
@@ -118,7 +123,7 @@ impl Cavities<'_> {
         None
     }
 
-    /// Whether any luminaire is seen from a place: one ray to each until one is.
+    /// Whether any luminaire is seen from a place, one ray to each until one is, or a luminous surface.
     fn sees_light(&self, place: &Landing, rng: &mut Rng) -> bool {
         let emitters = self.emitters;
         let scene = emitters.scene;
@@ -133,8 +138,19 @@ impl Cavities<'_> {
                         .arrival_if(source, origin, rng.uniforms(), |direction| facing.dot(direction) > 0.0)
                         .is_some_and(|arrival| emitters.passed(source, origin, &arrival) > 0.0)
             })
-        })
+        }) || self.glow.is_some_and(|glow| sees_glow(glow, emitters, self.patches, place, rng))
     }
+}
+
+/// Whether any of a few rays to luminous surfaces meets one.
+pub(super) fn sees_glow(
+    glow: &Aims,
+    emitters: &Emitters,
+    patches: &Patches,
+    place: &Landing,
+    rng: &mut Rng,
+) -> bool {
+    (0..GLANCES).any(|_| glow.link(emitters, patches, place, rng.uniforms()).is_some())
 }
 
 /// A random place of a patch side, as a ray from above would find it.
@@ -167,6 +183,10 @@ mod tests {
 
     fn cuboid(mesh: &mut Mesh, name: &str, lo: DVec3, hi: DVec3) {
         let surface = mesh.add_surface(name, 0, true);
+        cuboid_of(mesh, surface, lo, hi);
+    }
+
+    fn cuboid_of(mesh: &mut Mesh, surface: u32, lo: DVec3, hi: DVec3) {
         let p = |k: [usize; 3]| DVec3::new([lo.x, hi.x][k[0]], [lo.y, hi.y][k[1]], [lo.z, hi.z][k[2]]);
         for corners in [
             [p([0, 0, 0]), p([0, 1, 0]), p([1, 1, 0]), p([1, 0, 0])],
@@ -228,12 +248,18 @@ mod tests {
             let lit: Vec<bool> = (0..patches.sides())
                 .map(|side| {
                     let at = place(&patches, side, [0.5; 3]);
-                    let cavities =
-                        Cavities { emitters: &emitters, patches: &patches, lit: &[], covers: vec![] };
+                    let cavities = Cavities {
+                        emitters: &emitters,
+                        patches: &patches,
+                        glow: None,
+                        lit: &[],
+                        covers: vec![],
+                    };
                     (0..4).any(|k| cavities.sees_light(&at, &mut Rng::new(1, 0, (4 * side + k) as u64)))
                 })
                 .collect();
-            let mut cavities = Cavities { emitters: &emitters, patches: &patches, lit: &lit, covers: vec![] };
+            let mut cavities =
+                Cavities { emitters: &emitters, patches: &patches, glow: None, lit: &lit, covers: vec![] };
             cavities.probe(&[], [1, 0]);
             let (mut rng, mut sight) = (Rng::new(1, 2, 3), Sight::new(1));
             let (mut wrong, mut tried, mut covered, mut hovered) = (0, 0, 0, 0);
@@ -267,5 +293,48 @@ mod tests {
                 "{wrong} of {tried} places are taken wrongly"
             );
         }
+    }
+
+    /// Catches: a hall that only a luminous tile lights taken for a cavity, since walks rarely come to the tile.
+    #[test]
+    fn luminous_surfaces_are_light_too() {
+        let mut mesh = Mesh::default();
+        let hall = mesh.add_surface("hall", 0, true);
+        cuboid_of(&mut mesh, hall, DVec3::ZERO, DVec3::new(20.0, 10.0, 4.0));
+        let tile = mesh.add_surface("tile", 1, true);
+        let p = |x: f64, y: f64| DVec3::new(x, y, 3.9);
+        mesh.add_quad([p(9.0, 4.0), p(9.0, 5.0), p(10.0, 5.0), p(10.0, 4.0)], tile);
+        let materials = vec![
+            Material { name: "dark".into(), bsdf: Bsdf::Lambert { reflectance: 0.1 } },
+            Material { name: "tile".into(), bsdf: Bsdf::Emitter { luminance_cd_m2: 1e4, reflectance: 0.0 } },
+        ];
+        let scene = Scene::new(mesh, materials, Vec::new()).expect("a scene");
+        let emitters = Emitters::new(&scene);
+        let patches = Patches::of_scene(&scene, 1.0);
+        let glow = Aims::new(&patches, |side| scene.bsdf(patches.triangle(side)).emitted());
+        let clear = |glow: Option<&Aims>| {
+            let lit: Vec<bool> = (0..patches.sides())
+                .map(|side| {
+                    let at = place(&patches, side, [0.5; 3]);
+                    let mut rng = Rng::new(3, 0, side as u64);
+                    glow.is_some_and(|glow| sees_glow(glow, &emitters, &patches, &at, &mut rng))
+                })
+                .collect();
+            let mut cavities =
+                Cavities { emitters: &emitters, patches: &patches, glow, lit: &lit, covers: vec![] };
+            cavities.probe(&[], [1, 0]);
+            // Inner sides below the tile: those of the floor.
+            let floor = (0..patches.sides()).filter(|&side| {
+                let (middle, front) = patches.centre(side);
+                let up = if side.is_multiple_of(2) { front.z } else { -front.z };
+                middle.z < 1e-6 && up > 0.5
+            });
+            let covers: Vec<Cover> = floor.map(|side| cavities.covers[side]).collect();
+            let clear = covers.iter().filter(|cover| **cover == Cover::Clear).count();
+            clear as f64 / covers.len() as f64
+        };
+        let (known, blind) = (clear(glow.as_ref()), clear(None));
+        assert!(known > 0.99, "{known} of the floor is clear");
+        assert!(blind < 0.9, "the twin that knows luminaires only finds {blind} clear");
     }
 }

@@ -1,6 +1,6 @@
 //! An independent check: plain path tracing from every receiver with next-event estimation of one
-//! luminaire at random (at glossy surfaces weighted with hits of openings), Russian roulette, and no
-//! stored field, no images, no splitting. It shares scene, tracer, scattering models and response
+//! luminaire at random (at glossy surfaces weighted with hits of openings) and of one luminous surface
+//! (weighted with hits of it), Russian roulette, and no stored field, no images, no splitting. It shares scene, tracer, scattering models and response
 //! kernels with the links method and nothing else.
 
 use glam::DVec3;
@@ -19,6 +19,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
     let paths = prepared.effort.paths;
     let mut values = vec![0.0; demand.rows() * channels * PARTS];
     let mut counts = Counts::default();
+    let glows = Glows::new(scene);
     let mut row = 0;
     // Items of this stream are disjoint from those of the links method: the two stay independent.
     let item = |index: usize| (1 << 40) + index as u64;
@@ -29,11 +30,17 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
             let out = &mut values[row * channels * PARTS..(row + 1) * channels * PARTS];
             for _ in 0..paths {
                 lamp_light(scene, origin, kernel, 1.0 / f64::from(paths), &mut rng, out);
+                if let Some(glow) = glows.one(scene, &mut rng, |_| origin) {
+                    let share = glow.density / (glow.density + kernel.pdf(glow.direction));
+                    let value = glow.lx * kernel.response(glow.direction) * share / f64::from(paths);
+                    out[glow.channel * PARTS + Part::Indirect as usize] += value;
+                }
                 let direction = kernel.sample(rng.uniforms());
                 let density = kernel.pdf(direction);
                 if density > 0.0 {
                     let weight = kernel.response(direction) / density / f64::from(paths);
-                    trace(scene, origin, direction, weight, false, &mut rng, &mut counts, out);
+                    let start = Start { origin, direction, weight, sees_lamps: false, drawn: Some(density) };
+                    trace(scene, &glows, start, &mut rng, &mut counts, out);
                 }
             }
             row += 1;
@@ -43,7 +50,9 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
         let mut rng = Rng::new(prepared.seed, stream, item(demand.receivers.len() + index));
         let out = &mut values[row * channels * PARTS..(row + 1) * channels * PARTS];
         for _ in 0..paths {
-            trace(scene, *point, *direction, 1.0 / f64::from(paths), true, &mut rng, &mut counts, out);
+            let (origin, direction, weight) = (*point, *direction, 1.0 / f64::from(paths));
+            let start = Start { origin, direction, weight, sees_lamps: true, drawn: None };
+            trace(scene, &glows, start, &mut rng, &mut counts, out);
         }
         row += 1;
     }
@@ -128,19 +137,28 @@ fn glossy_lamps(
     }
 }
 
-/// Follows one path. `sees_lamps`: the ray comes from an eye or a reflection, so openings count.
-#[allow(clippy::too_many_arguments, reason = "one path has this much state; a struct would only rename it")]
-fn trace(
-    scene: &Scene,
+/// How a path begins.
+struct Start {
     origin: DVec3,
     direction: DVec3,
     weight: f64,
+    /// The ray comes from an eye or a reflection, so openings count.
     sees_lamps: bool,
+    /// Density of the direction, 1/sr, where [`Glows::one`] was asked at the origin too; `None`: it was not.
+    drawn: Option<f64>,
+}
+
+/// Follows one path.
+fn trace(
+    scene: &Scene,
+    glows: &Glows,
+    Start { mut origin, mut direction, mut weight, mut sees_lamps, drawn }: Start,
     rng: &mut Rng,
     counts: &mut Counts,
     out: &mut [f64],
 ) {
-    let (mut origin, mut direction, mut weight, mut sees_lamps) = (origin, direction, weight, sees_lamps);
+    // Where the way to what is hit began, and the density there; a reflection in a mirror is found by no other.
+    let mut drawn = drawn.map(|density| (origin, density));
     let mut reflected_once = false;
     let mut diffuse_seen = false;
     let mut bodies = BodiesMet::default();
@@ -164,7 +182,10 @@ fn trace(
         let point = origin + direction * hit.distance_m;
         let lift = scene.tracer.offset_m();
         let bsdf = scene.bsdf(hit.triangle);
-        add_glow(scene, hit.triangle, weight, out);
+        let share = drawn.map_or(1.0, |(from, density)| {
+            density / (density + glows.density(scene, hit.triangle, point - from))
+        });
+        add_glow(scene, hit.triangle, weight * share, out);
         let frame = sphere::frame(normal);
         let to_eye = frame.transpose() * -direction;
         let next = bsdf.sample(to_eye, rng.uniforms());
@@ -186,10 +207,17 @@ fn trace(
                 let value = bsdf.f(local, to_eye) * local.z.abs() * lit.lx * weight * share;
                 out[lit.channel * PARTS + Part::Indirect as usize] += value;
             }
+            if let Some(glow) = glows.one(scene, rng, side) {
+                let local = frame.transpose() * glow.direction;
+                let share = glow.density / (glow.density + bsdf.pdf(local, to_eye));
+                let value = bsdf.f(local, to_eye) * local.z.abs() * glow.lx * weight * share;
+                out[glow.channel * PARTS + Part::Indirect as usize] += value;
+            }
         }
         let Some(next) = next else { return };
         if !next.specular {
             sees_lamps = false;
+            drawn = Some((point, bsdf.pdf(next.direction, to_eye)));
             if bsdf.lobe().is_some() {
                 let density = bsdf.pdf(next.direction, to_eye);
                 let (origin, towards) = (point + normal * lift, frame * next.direction);
@@ -198,6 +226,7 @@ fn trace(
             }
         } else if next.direction.z > 0.0 {
             sees_lamps = true;
+            drawn = None;
             reflected_once = true;
             bodies.reflected(scene, hit.triangle);
         } else {
@@ -245,13 +274,80 @@ fn add_lamps(
     }
 }
 
-fn add_glow(scene: &Scene, triangle: u32, weight: f64, out: &mut [f64]) {
-    let emitted = scene.bsdf(triangle).emitted();
-    if emitted > 0.0 {
-        let surface = scene.mesh.triangles[triangle as usize].surface as usize;
-        let own = Channel::Surfaces { material: scene.mesh.surfaces[surface].material };
-        if let Some(channel) = scene.channels.iter().position(|channel| *channel == own) {
-            out[channel * PARTS + Part::Indirect as usize] += emitted * weight;
+/// Luminous triangles, chosen by luminance times area; both sides of them shine.
+struct Glows {
+    /// Triangle, its channel, and luminance times area up to it.
+    list: Vec<(u32, usize, f64)>,
+    total: f64,
+}
+
+/// Light from a point on a luminous surface.
+struct Glow {
+    direction: DVec3,
+    /// Luminance over `density`, straight transmittance included.
+    lx: f64,
+    channel: usize,
+    /// Density with which its direction was chosen, 1/sr.
+    density: f64,
+}
+
+impl Glows {
+    fn new(scene: &Scene) -> Self {
+        let (mut list, mut total) = (Vec::new(), 0.0);
+        for triangle in 0..scene.mesh.triangles.len() as u32 {
+            if let Some(channel) = channel_of(scene, triangle) {
+                let (_, area_m2) = scene.mesh.normal_and_area(triangle as usize);
+                total += scene.bsdf(triangle).emitted() * area_m2;
+                list.push((triangle, channel, total));
+            }
         }
+        Self { list, total }
+    }
+
+    /// A point on one of them, if any can be seen from where it shines to.
+    fn one(&self, scene: &Scene, rng: &mut Rng, origin_towards: impl Fn(DVec3) -> DVec3) -> Option<Glow> {
+        if !(self.total > 0.0) {
+            return None;
+        }
+        let [choice, u, v] = rng.uniforms();
+        let chosen = self.list.partition_point(|(.., up_to)| *up_to <= choice * self.total);
+        let (triangle, channel, _) = self.list[chosen.min(self.list.len() - 1)];
+        let [a, b, c] = scene.mesh.corners(triangle as usize);
+        let root = u.sqrt();
+        let from = a + (b - a) * (root * (1.0 - v)) + (c - a) * (root * v);
+        let at = origin_towards(from);
+        let density = self.density(scene, triangle, from - at);
+        let distance_m = from.distance(at);
+        let direction = (from - at) / distance_m;
+        let reach = distance_m - 2.0 * scene.tracer.offset_m();
+        (density > 0.0 && density.is_finite()).then(|| {
+            let passed = scene.tracer.transmittance(at, direction, reach, &[]);
+            Glow { direction, lx: scene.bsdf(triangle).emitted() * passed / density, channel, density }
+        })
+    }
+
+    /// Density in 1/sr with which a point of a luminous triangle is chosen that lies `away` from where it is
+    /// seen: L/Σ(L A) · d²/cos θ.
+    fn density(&self, scene: &Scene, triangle: u32, away: DVec3) -> f64 {
+        let emitted = scene.bsdf(triangle).emitted();
+        let (normal, _) = scene.mesh.normal_and_area(triangle as usize);
+        let squared = away.length_squared();
+        let cos = (normal.dot(away) / squared.sqrt()).abs();
+        if emitted > 0.0 && cos > 0.0 { emitted / self.total * squared / cos } else { 0.0 }
+    }
+}
+
+/// Channel of a luminous triangle.
+fn channel_of(scene: &Scene, triangle: u32) -> Option<usize> {
+    let surface = scene.mesh.triangles[triangle as usize].surface as usize;
+    let own = Channel::Surfaces { material: scene.mesh.surfaces[surface].material };
+    (scene.bsdf(triangle).emitted() > 0.0)
+        .then(|| scene.channels.iter().position(|channel| *channel == own))
+        .flatten()
+}
+
+fn add_glow(scene: &Scene, triangle: u32, weight: f64, out: &mut [f64]) {
+    if let Some(channel) = channel_of(scene, triangle) {
+        out[channel * PARTS + Part::Indirect as usize] += scene.bsdf(triangle).emitted() * weight;
     }
 }

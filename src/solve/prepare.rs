@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use super::Effort;
 use super::aims::{AIMED, Aims};
-use super::beacons::mean_of_uneven;
-use super::covered::{Cavities, Cover, place};
+use super::beacons::{Evenness, shining};
+use super::covered::{Cavities, Cover, place, sees_glow};
 use super::highlights::{self, Highlights};
 use super::look::{Landing, Sight, Way, add_direct, add_emission, look};
 use super::refine::refine;
@@ -129,24 +129,26 @@ pub(super) fn parts(
     let scene = emitters.scene;
     let Making { purpose, seed, stream, .. } = *making;
     let channels = scene.channels.len();
+    let emitted = shining(scene, &patches);
+    let glow = Aims::new(&patches, |side| emitted[side]);
     let (lights, lit): (Vec<FirstLight>, Vec<bool>) = (0..patches.sides())
         .into_par_iter()
         .map(|side| {
             let rng = Rng::new(seed, stream, side as u64);
             let light = match making.covers.get(side) {
                 Some(Some(Cover::Dark)) => FirstLight { direct: vec![0.0; channels], lit: false, rng },
-                _ => first_light(emitters, &patches, side, rng),
+                _ => first_light(emitters, &patches, glow.as_ref(), side, rng),
             };
             let lit = light.lit;
             (light, lit)
         })
         .unzip();
-    let sent =
-        |side: usize| lights[side].direct.iter().sum::<f64>() + scene.bsdf(patches.triangle(side)).emitted();
-    // Links of answers' fields are aimed where few patches make most of the light.
-    let aimed = purpose.is_seen() || mean_of_uneven(&patches, sent).is_some();
+    let sent = |side: usize| lights[side].direct.iter().sum::<f64>() + emitted[side];
+    // Links of answers' fields are aimed where few patches make most of the light, or where any shines of itself.
+    let aimed = purpose.is_seen() || glow.is_some() || Evenness::of(&patches, sent).is_uneven;
     let aims = if aimed { Aims::new(&patches, sent) } else { None };
-    let mut cavities = Cavities { emitters, patches: &patches, lit: &lit, covers: Vec::new() };
+    let mut cavities =
+        Cavities { emitters, patches: &patches, glow: glow.as_ref(), lit: &lit, covers: Vec::new() };
     cavities.probe(making.covers, [seed, stream]);
     let links = Links { cavities: &cavities, highlights, aims: aims.as_ref(), making };
     let collected: Vec<Collected> =
@@ -167,7 +169,13 @@ pub(super) fn parts(
     Parts { field, direct, reached, covers, variances }
 }
 
-fn first_light(emitters: &Emitters, patches: &Patches, side: usize, mut rng: Rng) -> FirstLight {
+fn first_light(
+    emitters: &Emitters,
+    patches: &Patches,
+    glow: Option<&Aims>,
+    side: usize,
+    mut rng: Rng,
+) -> FirstLight {
     let scene = emitters.scene;
     let mut direct = vec![0.0; scene.channels.len()];
     let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
@@ -183,7 +191,13 @@ fn first_light(emitters: &Emitters, patches: &Patches, side: usize, mut rng: Rng
     for value in &mut direct {
         *value /= f64::from(DIRECT_SAMPLES);
     }
-    let lit = direct.iter().any(|value| *value > 0.0);
+    let shone_on = |glow: &Aims, rng: &mut Rng| {
+        (0..DIRECT_SAMPLES).any(|sample| {
+            let at = place(patches, side, sequence.point(sample, rng));
+            sees_glow(glow, emitters, patches, &at, rng)
+        })
+    };
+    let lit = direct.iter().any(|value| *value > 0.0) || glow.is_some_and(|glow| shone_on(glow, &mut rng));
     FirstLight { direct, lit, rng }
 }
 

@@ -47,6 +47,11 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "Area \"{}\": {} of {} points lie inside furniture and are left out.",
         "Область «{}»: {} из {} точек лежат внутри мебели и исключены.",
     ),
+    (
+        "no block has found reflected or emitted light here, though surfaces reflect or shine: there is no upper end",
+        "ни один блок не нашёл здесь отражённого или излучённого поверхностями света, хотя поверхности отражают или светят: верхней границы нет",
+    ),
+    ("maintained", "эксплуатационные значения"),
     // Notes of a view.
     (
         "luminous surfaces: emitted light in pieces with their own position index; what they reflect belongs to the background",

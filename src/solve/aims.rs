@@ -140,7 +140,7 @@ mod tests {
             (0..parts).flat_map(|k| [k as f64 / parts as f64, (k as f64 + 1.0 - 1e-12) / parts as f64]);
         let sums = aims.cumulative.iter().flat_map(|sum| [*sum, sum.next_down()]);
         let random = (0..20_000).map(|_| rng.uniform());
-        for choice in edges.chain(sums).chain(random).filter(|choice| *choice < 1.0) {
+        for choice in edges.chain(sums).chain(random).filter(|choice| (0.0..1.0).contains(choice)) {
             let searched = aims.cumulative.partition_point(|sum| *sum <= choice).min(parts - 1);
             assert_eq!(aims.chosen(choice), searched, "{choice}");
         }

@@ -12,6 +12,7 @@ mod glints;
 mod images;
 mod seen;
 mod shining;
+mod twice;
 
 use glam::{DMat3, DVec3};
 
@@ -26,6 +27,7 @@ pub use glints::{Glint, GlintPiece, glints_from};
 pub use images::{Mirror, planes};
 pub use seen::{Seen, SeenPiece, Sighted, seen_by_points, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
+pub use twice::{ByChance, facing_pairs, twice_mirrored};
 
 /// All luminaires of a scene and their images.
 #[derive(Debug)]

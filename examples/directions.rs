@@ -288,7 +288,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let projection = Projection::HemisphericalFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
     let view = View::new(projection, DVec3::new(1.5, 1.2, 1e-6), DVec3::Z, DVec3::Y)?;
     let exposure = expose(&scene, 1);
-    let picture = render(&exposure.picture(&[1.0]), &view, [size, size], Detail::Exact, &|_| ()).0;
+    let picture = render(&exposure.picture(&[1.0], Detail::Exact), &view, [size, size], &|_| ()).0;
     // On this projection a pixel is an equal share of cos dω.
     let share = PI / (0.25 * PI * (size * size) as f64);
     let brightest = 0.2 * picture.luminance_cd_m2.iter().copied().fold(0.0, f64::max);

@@ -1,6 +1,7 @@
 //! A glare map of the office, 1 000 eyes × 8 directions: time after the solve, and the largest error of
 //! UGR against unbiased values of many blocks; the worst eyes are looked at again by so many that the
-//! reference's own noise does not count. `cargo run --release --example glare_map [BLOCKS [RAYS WALKS ROUGH]]`
+//! reference's own noise does not count. `cargo run --release --example glare_map [BLOCKS [RAYS WALKS
+//! ROUGH]]`
 
 #![allow(clippy::print_stdout, reason = "a study prints")]
 
@@ -39,8 +40,15 @@ fn main() {
     let number = |place: usize, usual: u32| {
         std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(usual)
     };
-    let rough = std::env::args().nth(4).and_then(|text| text.parse().ok()).unwrap_or(USUAL.rough);
-    let effort = GlanceEffort { rays: number(2, USUAL.rays), walks: number(3, USUAL.walks), rough, ..USUAL };
+    let fraction = |place: usize, usual: f64| {
+        std::env::args().nth(place).and_then(|text| text.parse().ok()).unwrap_or(usual)
+    };
+    let effort = GlanceEffort {
+        rays: number(2, USUAL.rays),
+        walks: number(3, USUAL.walks),
+        rough: fraction(4, USUAL.rough),
+        ..USUAL
+    };
     let mended = mend_for(map, &prepared, &effort);
     println!(
         "field and its mending: {:.2} CPU-s, {:.2} s",

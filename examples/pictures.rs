@@ -86,13 +86,12 @@ fn eyes() -> Result<String, Box<dyn Error>> {
         let effort = Effort { gather: 128, walks: 64, opening_points: 16, ..Effort::default() };
         let sheets = common::sheets(&world.scene, &demand, Method::Links, effort, 5, 4096);
         let exposure = expose(&world.scene, 1);
-        let picture = exposure.picture(&weights);
         for (row, viewpoint) in world.viewpoints.iter().enumerate() {
             let truth = lx(&sheets, row, &weights);
             let projection = Projection::AngularFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
             let view = View::new(projection, viewpoint.eye, viewpoint.directions[0], DVec3::Z)?;
             let percent = [Detail::Exact, Detail::Stored].map(|detail| {
-                let (image, _) = render(&picture, &view, [600, 600], detail, &|_| {});
+                let (image, _) = render(&exposure.picture(&weights, detail), &view, [600, 600], &|_| {});
                 image.illuminance_lx().map_or(f64::NAN, |lx| 100.0 * (lx / truth.value - 1.0))
             });
             writeln!(
@@ -124,7 +123,7 @@ struct Compared {
 fn compare(exposure: &Exposure, project: &Project, view: &View, size: [usize; 2]) -> Compared {
     let world = &project.worlds[0];
     let weights = weights(world, &project.light_scenes[0], &world.rooms[0], false);
-    let (image, _) = render(&exposure.picture(&weights), view, size, Detail::Exact, &|_| {});
+    let (image, _) = render(&exposure.picture(&weights, Detail::Exact), view, size, &|_| {});
     let demand = Demand::default();
     let effort = Effort { gather: 1, ..Effort::default() };
     let prepared = prepare(&world.scene, &demand, Method::Links, effort, 3);
@@ -218,7 +217,7 @@ fn plates() -> Result<String, Box<dyn Error>> {
     let world = &project.worlds[0];
     let weights = weights(world, &project.light_scenes[0], &world.rooms[0], false);
     let exposure = expose(&world.scene, 1);
-    let picture = exposure.picture(&weights);
+    let picture = exposure.picture(&weights, Detail::Exact);
     let exact = Plates { source: 0.5, rho: [0.5; 2] };
     let step = 0.02;
     let truth: Vec<f64> = (0..=275).map(|k| 1000.0 * exact.exact(step * f64::from(k))).collect();
@@ -230,7 +229,7 @@ fn plates() -> Result<String, Box<dyn Error>> {
         "\n| camera | pixels compared | mean error | half within | 95 of 100 within |\n|---|---|---|---|---|\n",
     );
     for camera in &world.cameras {
-        let (image, _) = render(&picture, &camera.view, camera.size, Detail::Exact, &|_| {});
+        let (image, _) = render(&picture, &camera.view, camera.size, &|_| {});
         let mut percent = Vec::new();
         for (index, luminance) in image.luminance_cd_m2.iter().enumerate() {
             let at = [index % camera.size[0], index / camera.size[0]].map(|k| k as f64 + 0.5);
@@ -256,6 +255,7 @@ fn plates() -> Result<String, Box<dyn Error>> {
         shots.push(Shot {
             name: camera.name.clone(),
             light_scene: project.light_scenes[0].name.clone(),
+            illuminance_lx: image.illuminance_lx(),
             image,
             way: Way::Exact,
             biases: omissions(&world.scene, Detail::Exact),

@@ -126,6 +126,7 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         room: 0,
         eye: DVec3::new(0.6, 2.0, 1.2),
         directions: vec![DVec3::X],
+        azimuths_deg: vec![0.0],
         indices: Vec::new(),
         light_scene: None,
         highlights: true,

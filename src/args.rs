@@ -323,6 +323,9 @@ fn duration(text: &str) -> Result<Duration, String> {
         "h" => 3600.0,
         _ => return Err(format!("unknown unit \"{unit}\"; write 30s, 2m or 1h")),
     };
+    if number * factor <= 0.0 {
+        return Err(format!("\"{text}\" is no time to compute in; write 30s, 2m or 1h"));
+    }
     Duration::try_from_secs_f64(number * factor)
         .map_err(|_| format!("\"{text}\" is not a time that can be waited for"))
 }

@@ -13,25 +13,25 @@ pub struct Glare {
     #[arg(value_name = "PROJECT", conflicts_with = "image")]
     pub project: Option<PathBuf>,
     /// Of a project: UGR by six conventions of sources and position index
-    #[arg(long, requires = "project")]
+    #[arg(long)]
     pub compare_methods: bool,
-    /// Of a project: number of blocks
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=16_384))]
-    pub blocks: u32,
+    /// Of a project: number of blocks [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=16_384))]
+    pub blocks: Option<u32>,
     /// Of a project: glare maps by blocks of unbiased answers in place of look-ups, which takes far longer
-    #[arg(long, requires = "project")]
+    #[arg(long)]
     pub unbiased: bool,
     /// Of a project: values from a field that `solve` kept (its file or folder) with nothing solved anew; no interval
-    #[arg(long, value_name = "FILE", requires = "project", conflicts_with_all = ["compare_methods", "unbiased", "blocks", "seed"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["compare_methods", "unbiased", "blocks", "seed"])]
     pub field: Option<PathBuf>,
     /// Of a project: folder for the tables and drawings of its glare maps [default: none are written]
-    #[arg(long, value_name = "DIR", requires = "project")]
+    #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Of a project: language of the observers' cards
-    #[arg(long, value_enum, default_value_t = LangChoice::En)]
-    pub lang: LangChoice,
+    /// Of a project: language of the observers' cards [default: en]
+    #[arg(long, value_enum)]
+    pub lang: Option<LangChoice>,
     /// Luminance images: Radiance HDR or OpenEXR
-    #[arg(long, value_name = "FILE", required_unless_present = "project", num_args = 1..)]
+    #[arg(long, value_name = "FILE", num_args = 1..)]
     pub image: Vec<PathBuf>,
     /// Pixels above L cd/m² are glare sources [default: 2000]
     #[arg(long, value_name = "L", value_parser = positive, conflicts_with = "threshold_factor")]
@@ -43,39 +43,40 @@ pub struct Glare {
     /// luminance times 5 is the threshold unless another is given
     #[arg(long, value_name = "X,Y,ANGLE", value_parser = task)]
     pub task: Option<[f64; 3]>,
-    /// Pixels within half of this angle belong to one source, rad
-    #[arg(long, value_name = "ANGLE", default_value_t = 0.2, value_parser = positive)]
-    pub search_radius: f64,
-    /// Luminance above which peaks are sources of their own, cd/m², or "none"
-    #[arg(long, value_name = "L", default_value = "50000", value_parser = peak)]
-    pub peak: Peak,
+    /// Pixels within half of this angle belong to one source, rad [default: 0.2]
+    #[arg(long, value_name = "ANGLE", value_parser = positive)]
+    pub search_radius: Option<f64>,
+    /// Luminance above which peaks are sources of their own, cd/m², or "none" [default: 50000]
+    #[arg(long, value_name = "L", value_parser = peak)]
+    pub peak: Option<Peak>,
     /// Lower DGP in dim scenes
     #[arg(long)]
     pub low_light: bool,
     /// Image of the same size; where it is black nothing is seen
     #[arg(long, value_name = "FILE")]
     pub mask: Option<PathBuf>,
-    /// Model of the position index
-    #[arg(long, value_enum, default_value_t = PositionChoice::Levin)]
-    pub position_index: PositionChoice,
-    /// Coefficients of DGP
-    #[arg(long, value_enum, default_value_t = DgpChoice::Evalglare)]
-    pub dgp: DgpChoice,
+    /// Model of the position index [default: levin]
+    #[arg(long, value_enum)]
+    pub position_index: Option<PositionChoice>,
+    /// Coefficients of DGP [default: evalglare]
+    #[arg(long, value_enum)]
+    pub dgp: Option<DgpChoice>,
     /// Illuminance measured at the eye, lx, in place of the image's own
     #[arg(long, value_name = "LX", value_parser = positive)]
     pub measured_ev: Option<f64>,
-    /// View of images that do not say it, as Radiance writes it: "-vta -vv 180 -vh 180"
+    /// View in place of the file's own, as Radiance writes it: "-vta -vh 180 -vv 180"; what it leaves out is
+    /// the file's, and without one there it must say -vt, -vh and -vv
     #[arg(long, value_name = "OPTIONS", allow_hyphen_values = true)]
     pub view: Option<String>,
     /// Half height of a horizontal band whose luminance is asked for, rad
     #[arg(long, value_name = "ANGLE", value_parser = positive)]
     pub band: Option<f64>,
     /// Statistics of luminance gradients too: experimental, in no norm and no verdict
-    #[arg(long, conflicts_with = "project")]
+    #[arg(long)]
     pub experimental: bool,
-    /// Age of the observer, years; veiling luminance asks for it
-    #[arg(long, value_name = "YEARS", default_value_t = 25.0, value_parser = positive)]
-    pub age: f64,
+    /// Age of the observer, years; veiling luminance asks for it [default: 25]
+    #[arg(long, value_name = "YEARS", value_parser = positive)]
+    pub age: Option<f64>,
     /// What is printed
     #[arg(long, value_enum, default_value_t = GlareFormat::Human)]
     pub format: GlareFormat,
@@ -85,6 +86,42 @@ pub struct Glare {
     /// How the run goes; seed and files outside concern a project
     #[command(flatten)]
     pub run: Run,
+}
+
+impl Glare {
+    /// The first option that means nothing for what is named: images or a project. Clap's `requires` cannot
+    /// say this beside `conflicts_with`, and an option that is accepted and not heeded is a wrong number.
+    pub fn misplaced(&self) -> Option<&'static str> {
+        let of_images = [
+            ("--threshold", self.threshold.is_some()),
+            ("--threshold-factor", self.threshold_factor.is_some()),
+            ("--task", self.task.is_some()),
+            ("--search-radius", self.search_radius.is_some()),
+            ("--peak", self.peak.is_some()),
+            ("--low-light", self.low_light),
+            ("--mask", self.mask.is_some()),
+            ("--position-index", self.position_index.is_some()),
+            ("--dgp", self.dgp.is_some()),
+            ("--measured-ev", self.measured_ev.is_some()),
+            ("--view", self.view.is_some()),
+            ("--band", self.band.is_some()),
+            ("--experimental", self.experimental),
+            ("--age", self.age.is_some()),
+            ("--check", self.check.is_some()),
+        ];
+        let of_projects = [
+            ("--compare-methods", self.compare_methods),
+            ("--blocks", self.blocks.is_some()),
+            ("--unbiased", self.unbiased),
+            ("--field", self.field.is_some()),
+            ("--out", self.out.is_some()),
+            ("--lang", self.lang.is_some()),
+            ("--seed", self.run.seed.is_some()),
+            ("--allow-outside", self.run.allow_outside),
+        ];
+        let foreign = if self.project.is_some() { &of_images[..] } else { &of_projects };
+        foreign.iter().find(|(_, given)| *given).map(|(name, _)| *name)
+    }
 }
 
 /// Luminance of peaks.

@@ -7,13 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use gershun::outcome::{Outcome, Verdict};
 use gershun::project::Project;
+use gershun::report::words::{Term, phrase};
 use gershun::report::{self, Colour, Style};
 use gershun::{Progress, Watch};
 
 use crate::args::{Check, ColourChoice, Format, Undecided};
 use crate::args_run::LangChoice;
 use crate::commands_lamp::faults;
-use crate::commands_run::{LateBar, folder, opened, spoken, use_threads};
+use crate::commands_run::{LateBar, folder, opened, spoken, use_threads, warn};
 use crate::{BAD_INPUT, COMPLIES, FAILS, INTERRUPTED, UNDECIDED, complain, remark, say};
 
 /// Runs the command.
@@ -60,6 +61,7 @@ fn graver(a: u8, b: u8) -> u8 {
 
 fn load_one(path: &Path, check: &Check) -> Option<Project> {
     let project = opened(path, check.load_options()).ok()?;
+    warn(&project, check.run.quiet);
     if !check.run.quiet {
         for fault in faults(path, &project) {
             remark(&fault);
@@ -144,8 +146,9 @@ fn print(outcome: &Outcome, check: &Check, out: &Path) -> u8 {
             }
             let code = say(&text);
             let stopped = report::words::stopped(lang, &outcome.solver.stopped);
-            let page = out.join("report.html");
-            remark(&format!("{} blocks: {stopped}\nreport: {}", outcome.solver.blocks, page.display()));
+            let page = out.join("report.html").display().to_string();
+            let done = phrase(lang, Term::BlocksDone, &[&outcome.solver.blocks.to_string(), stopped]);
+            remark(&format!("{done}\n{}", phrase(lang, Term::ReportAt, &[&page])));
             code
         }
         Format::Json => match std::fs::read_to_string(out.join("result.json")) {

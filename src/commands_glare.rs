@@ -9,8 +9,8 @@ use gershun::glare::gradient::{SCALE_DEG, gradient};
 use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
 use gershun::glare::source::{DgpForm, Given};
-use gershun::image::{LuminanceImage, ViewOptions, read};
-use gershun::observe::map::{MapMethod, Mapped, maps};
+use gershun::image::{LuminanceImage, asked_view, read};
+use gershun::observe::map::{MapMethod, Mapped, approximations, maps};
 use gershun::observe::stored::observe_stored;
 use gershun::observe::{CONVENTIONS, Observed, Sheets, observe, room_tables};
 use gershun::project::read_image;
@@ -21,6 +21,7 @@ use gershun::units::Nits;
 use rayon::prelude::*;
 
 use crate::args_glare::{DgpChoice, Glare, GlareFormat, Peak, PositionChoice};
+use crate::args_run::LangChoice;
 use crate::commands_run::{open, use_threads};
 use crate::commands_solve::stored;
 use crate::{BAD_INPUT, COMPLIES, complain, remark, say};
@@ -29,6 +30,16 @@ use crate::{BAD_INPUT, COMPLIES, complain, remark, say};
 const TASK_FACTOR: f64 = 5.0;
 
 pub fn run(glare: &Glare) -> u8 {
+    if let Some(option) = glare.misplaced() {
+        let (whose, here) =
+            if glare.project.is_some() { ("images", "a project") } else { ("a project", "images") };
+        return complain(&format!(
+            "{option} is for {whose}, and the glare of {here} is asked for\n  hint: leave it out; gershun glare --help says what is for which"
+        ));
+    }
+    if glare.project.is_none() && glare.image.is_empty() {
+        return complain("nothing is named\n  hint: gershun glare PROJECT, or gershun glare --image FILE…");
+    }
     if let Some(project) = &glare.project {
         return observers(glare, project);
     }
@@ -57,7 +68,8 @@ pub fn run(glare: &Glare) -> u8 {
             Err(error) => worst = complain(&error),
         }
     }
-    if evaluated.is_empty() {
+    let many = glare.image.len() > 1;
+    if evaluated.is_empty() && !many {
         return BAD_INPUT;
     }
     if let (Some(path), [only]) = (&glare.check, evaluated.as_slice())
@@ -67,7 +79,7 @@ pub fn run(glare: &Glare) -> u8 {
     }
     let text = match glare.format {
         GlareFormat::Human => Ok(report::images_text(&evaluated)),
-        GlareFormat::Json => report::images_json(&evaluated),
+        GlareFormat::Json => report::images_json(&evaluated, many),
         GlareFormat::Csv => report::indices_csv(&evaluated),
     };
     match text {
@@ -84,7 +96,7 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
     };
     let conventions = if glare.compare_methods { &CONVENTIONS[..] } else { &CONVENTIONS[..1] };
     let observed = match &glare.field {
-        None => observe(&project, conventions, glare.blocks as usize),
+        None => observe(&project, conventions, blocks(glare)),
         Some(field) => {
             let sheets = if glare.out.is_some() { Sheets::All } else { Sheets::None };
             match stored(field, &project) {
@@ -98,21 +110,34 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
     } else {
         maps(&project, method(glare))
     };
-    if glare.field.is_some() && !glare.run.quiet {
-        if project.worlds.iter().any(|world| !world.glare_maps.is_empty()) {
-            remark("glare maps are left out: they need a field that was mended for them");
-        }
+    // Maps that the project has and nobody computes here, and why.
+    let left_out = if glare.compare_methods {
+        "glare maps are left out: conventions are compared at viewpoints"
+    } else {
+        "glare maps are left out: they need a field that was mended for them"
+    };
+    let has_maps = project.worlds.iter().any(|world| !world.glare_maps.is_empty());
+    let left_out = (has_maps && maps.is_empty()).then_some(left_out);
+    if observed.is_empty() && maps.is_empty() {
+        let what = left_out.map_or("the project has no viewpoint and no glare map".to_owned(), |left_out| {
+            format!("the project has no viewpoint; {left_out}")
+        });
+        return complain(&format!("{what}\n  hint: add [[viewpoint]] with eye and direction"));
+    }
+    if !glare.run.quiet {
+        left_out.into_iter().for_each(remark);
         if glare.format == GlareFormat::Csv {
             observed.first().into_iter().flat_map(|view| &view.approximations).for_each(|said| remark(said));
+            for map in &maps {
+                for said in approximations(map) {
+                    remark(&format!("{}: {said}", map.name));
+                }
+            }
         }
     }
-    if observed.is_empty() && maps.is_empty() {
-        let hint = "hint: add [[viewpoint]] with eye and direction";
-        return complain(&format!("the project has no viewpoint and no glare map\n  {hint}"));
-    }
+    let lang = glare.lang.map_or(Lang::En, LangChoice::lang);
     if let Some(out) = &glare.out
-        && let Err(error) =
-            write_maps(out, &maps).and_then(|()| write_cards(out, &observed, glare.lang.lang()))
+        && let Err(error) = write_maps(out, &maps).and_then(|()| write_cards(out, &observed, lang))
     {
         return complain(&error);
     }
@@ -124,8 +149,8 @@ fn observers(glare: &Glare, path: &Path) -> u8 {
             let maps: Vec<String> = maps.iter().map(report::map_text).collect();
             Ok(report::observed_text(&observed) + &maps.concat())
         }
-        GlareFormat::Json => report::observed_json(&observed),
-        GlareFormat::Csv => report::observed_csv(&observed),
+        GlareFormat::Json => report::observed_json(&observed, &maps),
+        GlareFormat::Csv => report::observed_csv(&observed, &maps),
     };
     match text {
         Ok(text) => tell(glare, &text),
@@ -138,9 +163,16 @@ fn tell(glare: &Glare, text: &str) -> u8 {
     if glare.run.quiet && glare.format == GlareFormat::Human { COMPLIES } else { say(text) }
 }
 
+/// Blocks of a project where none are asked for.
+const BLOCKS: usize = 64;
+
+fn blocks(glare: &Glare) -> usize {
+    glare.blocks.map_or(BLOCKS, |blocks| blocks as usize)
+}
+
 /// How maps are computed.
 fn method(glare: &Glare) -> MapMethod {
-    if glare.unbiased { MapMethod::Unbiased(glare.blocks as usize) } else { MapMethod::default() }
+    if glare.unbiased { MapMethod::Unbiased(blocks(glare)) } else { MapMethod::default() }
 }
 
 /// `glare_map_1.csv` and `.svg` for every map.
@@ -166,16 +198,16 @@ fn write_cards(folder: &Path, observed: &[Observed], lang: Lang) -> Result<(), S
     Ok(())
 }
 
-/// The image of a file; `view`, if given, takes the place of what the file says.
+/// The image of a file; what `view` says, if it is given, takes the place of what the file says.
 fn image(path: &Path, view: Option<&str>) -> Result<LuminanceImage, String> {
     let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let bytes = read_image(path).map_err(|error| error.to_string())?;
     let mut image = read(&bytes).map_err(|error| at(&error))?;
     if let Some(text) = view {
-        let mut options = ViewOptions::default();
-        options.add(text).map_err(|error| format!("--view: {error}"))?;
-        image.view = Some(options.view().map_err(|error| format!("--view: {error}"))?);
-        image.notes.push("the view is that of the command line".into());
+        let view = asked_view(text, image.view.as_ref())
+            .map_err(|error| format!("{}: --view: {error}", path.display()))?;
+        image.notes.push(format!("the view is that of the command line: {}", view.to_options()));
+        image.view = Some(view);
     }
     Ok(image)
 }
@@ -206,27 +238,29 @@ fn options(glare: &Glare, image: &LuminanceImage) -> Result<Options, String> {
         (None, Some(factor), None) => Threshold::TimesMean(factor),
         (None, None, None) => Search::default().threshold,
     };
+    let usual = Options::default();
     Ok(Options {
         search: Search {
             threshold,
-            radius_rad: glare.search_radius,
+            radius_rad: glare.search_radius.unwrap_or(usual.search.radius_rad),
             peak: match glare.peak {
-                Peak::Above(luminance) => Some(Nits(luminance)),
-                Peak::None => None,
+                Some(Peak::Above(luminance)) => Some(Nits(luminance)),
+                Some(Peak::None) => None,
+                None => usual.search.peak,
             },
         },
         position: match glare.position_index {
-            PositionChoice::Levin => PositionModel::Levin,
-            PositionChoice::Table => PositionModel::Table,
+            Some(PositionChoice::Levin) | None => PositionModel::Levin,
+            Some(PositionChoice::Table) => PositionModel::Table,
         },
         given: Given {
-            age_years: glare.age,
+            age_years: glare.age.unwrap_or(usual.given.age_years),
             low_light: glare.low_light,
             dgp: match glare.dgp {
-                DgpChoice::Evalglare => DgpForm::Evalglare,
-                DgpChoice::Published => DgpForm::Published,
+                Some(DgpChoice::Evalglare) | None => DgpForm::Evalglare,
+                Some(DgpChoice::Published) => DgpForm::Published,
             },
-            ..Given::default()
+            ..usual.given
         },
         measured_e_v_lx: glare.measured_ev,
         task,

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::args_lamp::{FarFieldArgs, InfoFormat, Lamp, LintFormat, TableFormat};
 use crate::commands_run::open;
-use crate::{BAD_INPUT, COMPLIES, FAILS, complain, say};
+use crate::{BAD_INPUT, COMPLIES, FAILS, complain, remark, say};
 
 pub fn run(command: &Lamp) -> u8 {
     match command {
@@ -34,8 +34,9 @@ pub fn run(command: &Lamp) -> u8 {
     }
 }
 
-/// All files in their order; those that cannot be opened are complained about and left out.
-fn read_all(files: &[PathBuf]) -> (Vec<report::Batch>, u8) {
+/// All files in their order. Those that cannot be opened are complained about, and `listed` among the others
+/// for programs, which read standard output alone.
+fn read_all(files: &[PathBuf], listed: bool) -> (Vec<report::Batch>, u8) {
     let read = |path: &PathBuf| -> Result<report::Batch, String> {
         let bytes = read_photometry(path).map_err(|error| error.to_string())?;
         let file = path.display().to_string();
@@ -44,10 +45,16 @@ fn read_all(files: &[PathBuf]) -> (Vec<report::Batch>, u8) {
     };
     let mut worst = COMPLIES;
     let mut batch = Vec::with_capacity(files.len());
-    for result in files.par_iter().map(read).collect::<Vec<_>>() {
+    for (path, result) in files.iter().zip(files.par_iter().map(read).collect::<Vec<_>>()) {
         match result {
             Ok(file) => batch.push(file),
-            Err(error) => worst = complain(&error),
+            Err(error) => {
+                worst = complain(&error);
+                if listed {
+                    let finding = Finding::new("unreadable", None, "it cannot be opened", error);
+                    batch.push(report::Batch { file: path.display().to_string(), read: Err(finding) });
+                }
+            }
         }
     }
     (batch, worst)
@@ -61,7 +68,7 @@ fn print(text: Result<String, gershun::report::ReportError>) -> u8 {
 }
 
 fn info(files: &[PathBuf], format: InfoFormat, lang: Lang) -> u8 {
-    let (batch, opened) = read_all(files);
+    let (batch, opened) = read_all(files, format != InfoFormat::Human);
     let printed = print(match format {
         InfoFormat::Human => Ok(report::info_text(&batch, lang)),
         InfoFormat::Json => report::info_json(&batch),
@@ -71,7 +78,7 @@ fn info(files: &[PathBuf], format: InfoFormat, lang: Lang) -> u8 {
 }
 
 fn lint(files: &[PathBuf], format: LintFormat, lang: Lang) -> u8 {
-    let (batch, opened) = read_all(files);
+    let (batch, opened) = read_all(files, format != LintFormat::Human);
     let printed = print(match format {
         LintFormat::Human => Ok(report::lint_human(&batch, lang)),
         LintFormat::Json => report::lint_json(&batch),
@@ -86,7 +93,8 @@ fn lint(files: &[PathBuf], format: LintFormat, lang: Lang) -> u8 {
 }
 
 fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat, lang: Lang) -> u8 {
-    let (batch, mut worst) = read_all(files);
+    let (batch, mut worst) = read_all(files, false);
+    let contained: usize = batch.iter().map(|file| file.read.as_ref().map_or(0, Vec::len)).sum();
     let mut tables = Vec::new();
     let mut text = String::new();
     for file in &batch {
@@ -121,7 +129,7 @@ fn ugr_table(files: &[PathBuf], shr: f64, format: TableFormat, lang: Lang) -> u8
     }
     let printed = print(match format {
         TableFormat::Human => Ok(text),
-        TableFormat::Csv => report::ugr_csv(&tables),
+        TableFormat::Csv => report::ugr_csv(&tables, files.len() > 1 || contained > 1),
     });
     worst.max(printed)
 }
@@ -137,6 +145,10 @@ fn read_only(path: &Path) -> Result<lamp::Lamp, String> {
 }
 
 fn polar(file: &Path, out: Option<&Path>, lang: Lang) -> Result<u8, String> {
+    let is_svg = |out: &Path| out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
+    if let Some(out) = out.filter(|out| !is_svg(out)) {
+        return Err(format!("{}: the diagram is an SVG\n  hint: name a file .svg", out.display()));
+    }
     let svg = report::polar(&read_only(file)?, lang);
     let Some(out) = out else {
         return Ok(say(&svg));
@@ -230,6 +242,14 @@ fn far_field(args: &FarFieldArgs, project: &Project) -> Result<u8, String> {
         )
     })?;
     let mut text = String::new();
+    if let Some((apparent_m2, luminous_m2)) = installed::spread(&photometry, &chosen)
+        && !args.run.quiet
+    {
+        remark(&format!(
+            "the file's luminous area is the rectangle around all openings, {apparent_m2:.2} m², of which {luminous_m2:.2} m² \
+             shine: luminance and UGR from this file are too low, illuminance is not concerned"
+        ));
+    }
     if let Some((out, target)) = target {
         let converted = lamp::convert::convert(&photometry, target).map_err(|error| error.to_string())?;
         write_file(out, &converted.bytes).map_err(|error| error.to_string())?;

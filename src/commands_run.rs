@@ -17,6 +17,7 @@ use crate::{BAD_INPUT, complain, remark};
 pub fn open(path: &Path, run: &Run) -> Result<Project, u8> {
     use_threads(run.threads)?;
     let mut project = opened(path, run.load_options())?;
+    warn(&project, run.quiet);
     if let Some(seed) = run.seed {
         project.accuracy.seed = seed;
     }
@@ -26,6 +27,13 @@ pub fn open(path: &Path, run: &Run) -> Result<Project, u8> {
 /// Loads a project; or tells all its mistakes and returns the exit code.
 pub fn opened(path: &Path, options: LoadOptions) -> Result<Project, u8> {
     load(path, &options).map_err(|diagnostics| complain_of_all(&diagnostics, path))
+}
+
+/// Tells what may well be a mistake.
+pub fn warn(project: &Project, quiet: bool) {
+    for warning in project.warnings.iter().filter(|_| !quiet) {
+        remark(&format!("{}\n", warning.as_warning()));
+    }
 }
 
 fn complain_of_all(diagnostics: &[Diagnostic], path: &Path) -> u8 {

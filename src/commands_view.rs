@@ -79,8 +79,7 @@ fn chosen(format: FormatChoice) -> Format {
 fn line(shot: &Shot) -> String {
     let values = &shot.image.luminance_cd_m2;
     let largest = values.iter().copied().fold(0.0, f64::max);
-    let lx =
-        shot.image.illuminance_lx().map_or(String::new(), |lx| format!(" · {lx:.1} lx from the picture"));
+    let lx = shot.illuminance_lx.map_or(String::new(), |lx| format!(" · {lx:.1} lx from the picture"));
     let error = match (shot.way, shot.median_relative_error()) {
         (Way::Blocks(blocks), Some(error)) => {
             format!("{blocks} blocks, median standard error {:.1} %", 100.0 * error)
@@ -202,8 +201,8 @@ fn take(project: &Project, world: &World, wanted: &Wanted, source: &Source, quie
         Source::Field(exposure, detail) => {
             let bar = LateBar::new(quiet, "rows");
             let tell = |rows| bar.show(rows, wanted.size[1], &wanted.name);
-            let picture = exposure.picture(&weights);
-            let (image, _) = render(&picture, &wanted.view, wanted.size, *detail, &tell);
+            let picture = exposure.picture(&weights, *detail);
+            let (image, _) = render(&picture, &wanted.view, wanted.size, &tell);
             bar.clear();
             let way = match detail {
                 Detail::Stored => Way::Stored,
@@ -219,7 +218,14 @@ fn take(project: &Project, world: &World, wanted: &Wanted, source: &Source, quie
         }
     };
     biases.extend(project.biases.iter().cloned());
-    Shot { name: wanted.name.clone(), light_scene: light_scene.name.clone(), image, way, biases }
+    Shot {
+        name: wanted.name.clone(),
+        light_scene: light_scene.name.clone(),
+        illuminance_lx: image.illuminance_lx(),
+        image,
+        way,
+        biases,
+    }
 }
 
 /// Mean of the blocks and its standard error, pixel by pixel (Welford's recurrence).

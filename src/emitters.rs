@@ -10,13 +10,15 @@ mod direct;
 mod glimpsed;
 mod glints;
 mod images;
+mod level;
+mod mirror;
 mod seen;
 mod shining;
 mod twice;
 
 use glam::{DMat3, DVec3};
 
-use crate::geometry::trace::{Hit, Tracer};
+use crate::geometry::trace::Hit;
 use crate::luminaire::Luminaire;
 use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
@@ -24,7 +26,8 @@ use crate::scene::Scene;
 pub use direct::{TOLERANCE, contour, unshadowed};
 pub use glimpsed::glimpsed_from;
 pub use glints::{Glint, GlintPiece, glints_from};
-pub use images::{Mirror, planes};
+pub use images::planes;
+pub use mirror::{Glimpse, Mirror};
 pub use seen::{Seen, SeenPiece, Sighted, seen_by_points, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
 pub use twice::{ByChance, facing_pairs, twice_mirrored};
@@ -79,6 +82,8 @@ pub struct Arrival {
     pub normal_lx: f64,
     /// That weight.
     pub weight: f64,
+    /// Where light of an image meets its mirror, if that is known: distance, m, and triangle.
+    pub mirrored: Option<(f64, u32)>,
 }
 
 impl Source {
@@ -186,6 +191,7 @@ impl<'s> Emitters<'s> {
             distance_m: source.position.distance(point),
             normal_lx: 0.0,
             weight: 1.0,
+            mirrored: None,
         })
     }
 
@@ -214,6 +220,26 @@ impl<'s> Emitters<'s> {
         shine: Shine,
         wanted: impl FnOnce(DVec3) -> bool,
     ) -> Option<Arrival> {
+        let mut mirrored = None;
+        let arrival = self.arriving(source, point, shine, |direction, distance_m| {
+            wanted(direction)
+                && source.mirror.is_none_or(|mirror| {
+                    mirrored = self.mirrors[mirror].meet(point, direction, distance_m);
+                    mirrored.is_some()
+                })
+        })?;
+        Some(Arrival { mirrored, ..arrival })
+    }
+
+    /// Light from a point of an opening, the edges of an image's mirror apart.
+    #[inline]
+    fn arriving(
+        &self,
+        source: &Source,
+        point: DVec3,
+        shine: Shine,
+        wanted: impl FnOnce(DVec3, f64) -> bool,
+    ) -> Option<Arrival> {
         let from = source.position + source.world_from_luminaire * shine.at;
         let towards = from - point;
         let distance_squared = towards.length_squared();
@@ -223,11 +249,8 @@ impl<'s> Emitters<'s> {
         }
         let distance_m = distance_squared.sqrt();
         let direction = towards / distance_m;
-        if !wanted(direction) {
+        if !wanted(direction, distance_m) {
             return None;
-        }
-        if let Some(mirror) = source.mirror {
-            self.mirrors[mirror].meet(self.scene, point, direction, distance_m)?;
         }
         let leaving = source.world_from_luminaire.transpose() * -direction;
         let distribution = &self.luminaire(source).kind.distribution;
@@ -237,6 +260,7 @@ impl<'s> Emitters<'s> {
             distance_m,
             normal_lx: shine.weight * intensity_cd / distance_squared,
             weight: shine.weight,
+            mirrored: None,
         })
     }
 
@@ -273,40 +297,8 @@ impl<'s> Emitters<'s> {
         let Some(mirror) = mirror else {
             return tracer.transmittance(point, direction, distance_m - 2.0 * tracer.offset_m(), &[]);
         };
-        let arrival = Arrival { direction, distance_m, normal_lx: 0.0, weight: 1.0 };
+        let arrival = Arrival { direction, distance_m, normal_lx: 0.0, weight: 1.0, mirrored: None };
         self.passed_by_mirror(&self.mirrors[mirror], tracer, point, &arrival, &[])
-    }
-
-    fn passed_by_mirror(
-        &self,
-        mirror: &Mirror,
-        tracer: &Tracer,
-        point: DVec3,
-        arrival: &Arrival,
-        blind: &[u32],
-    ) -> f64 {
-        let Some((distance_m, triangle)) =
-            mirror.meet(self.scene, point, arrival.direction, arrival.distance_m)
-        else {
-            return 0.0;
-        };
-        // Its own light passes a luminaire's body and is not reflected by it.
-        if blind.contains(&tracer.surface(triangle)) {
-            return 0.0;
-        }
-        let cos = arrival.direction.dot(mirror.normal).abs();
-        let Some((reflectance, _)) = self.scene.bsdf(triangle).specular(cos) else { return 0.0 };
-        let lift = tracer.offset_m();
-        // The body lets light pass that has not yet met the mirror.
-        let before = tracer.transmittance(point, arrival.direction, distance_m - lift, &[]);
-        if !(before * reflectance > 0.0) {
-            return 0.0;
-        }
-        let side = mirror.normal * -arrival.direction.dot(mirror.normal).signum();
-        let turned = point + arrival.direction * distance_m + side * lift;
-        let onward = arrival.direction - 2.0 * arrival.direction.dot(mirror.normal) * mirror.normal;
-        let rest = arrival.distance_m - distance_m - 2.0 * lift;
-        reflectance * before * tracer.transmittance(turned, onward, rest, blind)
     }
 
     /// Luminance in cd/m² with which transport sees the opening of `luminaire` along `direction`
@@ -321,13 +313,22 @@ impl<'s> Emitters<'s> {
     /// [`Emitters::opening_along`] of a luminaire or an image, as if nothing stood between.
     #[inline]
     pub fn along(&self, source: &Source, origin: DVec3, direction: DVec3) -> Option<(f64, Arrival)> {
+        // Most rays pass it by far: then its ball is missed too.
+        let away = source.position - origin;
+        let squared = away.length_squared();
+        let forward = away.dot(direction);
+        let aside = squared - forward * forward;
+        if aside > 1.000_001 * source.radius_m * source.radius_m + 1e-9 * squared {
+            return None;
+        }
         let into = source.world_from_luminaire.transpose();
         let (o, d) = (into * (origin - source.position), into * direction);
         let Met { distance_m, projected_m2, weight } = source.opening.along(o, d)?;
         let distribution = &self.luminaire(source).kind.distribution;
         let intensity_cd = distribution.intensity_along(-d) * source.dim;
         let normal_lx = weight * intensity_cd / (distance_m * distance_m);
-        Some((intensity_cd / projected_m2, Arrival { direction, distance_m, normal_lx, weight }))
+        let arrival = Arrival { direction, distance_m, normal_lx, weight, mirrored: None };
+        Some((intensity_cd / projected_m2, arrival))
     }
 
     /// Share of the light of an opening at `distance_m` that reaches the origin of a ray which meets

@@ -7,7 +7,7 @@ mod outline;
 use glam::{DVec2, DVec3};
 
 use outline::crossing;
-pub use outline::{distance_to_outline, inside};
+pub use outline::{distance_to_outline, inside, is_rectangle, width};
 
 /// Largest number of points of one grid, left-out points included.
 pub const MAX_POINTS: usize = 1_000_000;
@@ -80,6 +80,9 @@ pub enum Exclusion {
 pub enum GridRule {
     /// EN 12464-1, see [`spacing_m`].
     En,
+    /// The same with a spacing of at most so many metres: the sides alone would take an L-shaped corridor for the
+    /// hall round it, and a strip round a task area for the task.
+    EnAtMost(f64),
     /// EN 12193: p as in EN 12464-1 with d the longer side, the numbers of points odd.
     EnSports,
     /// Spacing of at most so many metres on both edges.
@@ -340,10 +343,11 @@ fn counts(
     let fitted = |step_m: f64| sides_m.map(|side| (side / step_m - 1e-9).ceil().max(1.0) as usize);
     let mut counts = match rule {
         GridRule::En => fitted(spacing_m(sides_m[0], sides_m[1])),
+        GridRule::EnAtMost(step_m) if step_m > 0.0 => fitted(spacing_m(sides_m[0], sides_m[1]).min(step_m)),
         GridRule::EnSports => odd_counts(sides_m),
         GridRule::Step(step_m) if step_m > 0.0 => fitted(step_m),
         GridRule::Count(counts) if counts[0] > 0 && counts[1] > 0 => counts,
-        GridRule::Step(_) | GridRule::Count(_) => return Err(GridError::Rule),
+        GridRule::EnAtMost(_) | GridRule::Step(_) | GridRule::Count(_) => return Err(GridError::Rule),
     };
     let affordable = |counts: [usize; 2]| {
         counts[0]
@@ -363,7 +367,7 @@ fn counts(
             counts[axis] += if rule == GridRule::EnSports { 2 } else { 1 };
         }
     }
-    if rule == GridRule::En {
+    if matches!(rule, GridRule::En | GridRule::EnAtMost(_)) {
         // Cells between 1:2 and 2:1: the coarser edge gets points until they are.
         let cell = |counts: [usize; 2], axis: usize| sides_m[axis] / counts[axis] as f64;
         for (axis, other) in [(0, 1), (1, 0)] {

@@ -8,13 +8,15 @@ mod hdr;
 mod luminance_image;
 mod primaries;
 mod projection;
+mod raster;
 mod view_text;
 
 pub use exr::{read as read_exr, write as write_exr};
 pub use hdr::{read as read_hdr, write as write_hdr};
 pub use luminance_image::LuminanceImage;
 pub use projection::{Projection, View};
-pub use view_text::Options as ViewOptions;
+pub use raster::Raster;
+pub use view_text::asked as asked_view;
 
 /// Most pixels an image may have: at 8 bytes each they fill half a GiB.
 pub const MOST_PIXELS: usize = 1 << 26;
@@ -58,6 +60,14 @@ pub enum ImageError {
     /// A view that cannot be used.
     #[error("view: {0}")]
     View(String),
+    /// A view that a person asks for and that cannot be understood.
+    #[error("{message}\n  hint: {hint}")]
+    Asked {
+        /// What is wrong.
+        message: String,
+        /// What to write instead.
+        hint: String,
+    },
 }
 
 /// Reads a luminance image, whatever of the two formats it is in.

@@ -15,7 +15,7 @@ use crate::glare::ugr::ugr;
 use crate::image::{Projection, View};
 use crate::measure::glare_sources::{Convention, SourceModel};
 use crate::measure::{Answers, room_ugr, view, weights};
-use crate::outcome::{IndexOutcome, Interval, UgrTableOutcome, ViewpointOutcome};
+use crate::outcome::{GlareSourceOutcome, IndexOutcome, Interval, UgrTableOutcome, ViewpointOutcome};
 use crate::project::{Project, World};
 use crate::query::{Demand, Kernel, Receiver};
 use crate::solve::{Effort, Method, Prepared, Sheet, answer, prepare, thumbnail};
@@ -60,6 +60,10 @@ pub struct Observed {
     pub e_v_lx: f64,
     /// Whether no other direction of this viewpoint has a higher UGR by this convention.
     pub worst: bool,
+    /// What makes UGR doubtful here, and what was counted as what.
+    pub notes: Vec<String>,
+    /// The sources, the most glaring first.
+    pub sources: Vec<GlareSourceOutcome>,
     /// What its values approximate, one sentence each; empty where they are unbiased.
     pub approximations: Vec<String>,
     /// UGR of a picture of the view, where conventions are compared and a card is made.
@@ -172,14 +176,16 @@ fn of_viewpoint(
                 viewpoint: viewpoint.name.clone(),
                 light_scene: light_scene.name.clone(),
                 eye: viewpoint.eye,
-                azimuth_deg: gaze.y.atan2(gaze.x).to_degrees() + 0.0,
-                tilt_deg: gaze.z.clamp(-1.0, 1.0).asin().to_degrees(),
+                azimuth_deg: viewpoint.azimuths_deg[number],
+                tilt_deg: crate::sphere::azimuth_tilt_deg(gaze)[1],
                 convention,
                 ugr: glare.ugr.interval(),
                 indices: glare.indices.iter().map(view::GaugedIndex::outcome).collect(),
                 background_cd_m2: glare.background_cd_m2,
                 e_v_lx: glare.e_v_lx,
                 worst: false,
+                notes: glare.notes.clone(),
+                sources: glare.sources.clone(),
                 approximations: Vec::new(),
                 sheet: None,
                 image: None,

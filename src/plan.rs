@@ -12,7 +12,9 @@ mod zones;
 
 use glam::DVec3;
 
-use crate::grid::{Grid, GridError};
+pub use hidden::inside_furniture;
+
+use crate::grid::{self, Grid, GridError};
 use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, AreaShape, CustomSubject, Modification, Place, Project, World};
 use crate::quantity::{Property, Quantity, Statistic};
@@ -95,6 +97,8 @@ pub struct PlannedView {
     pub eye: DVec3,
     /// Unit line of sight.
     pub direction: DVec3,
+    /// Its azimuth, degrees from +x towards +y.
+    pub azimuth_deg: f64,
     /// Row of the illuminance at the eye.
     pub row: usize,
     /// Keys of the indices asked for beside UGR, by the viewpoint or by a requirement.
@@ -179,6 +183,13 @@ pub enum PlanError {
         /// Where the area is written, if a user wrote it.
         place: Option<Place>,
     },
+    /// More points than can be answered.
+    TooManyPoints {
+        /// Rooms of the world, joined.
+        rooms: String,
+        /// How many there are at least.
+        points: usize,
+    },
     /// A row that does not exist.
     NoRow {
         /// Norm key.
@@ -200,6 +211,12 @@ impl std::fmt::Display for PlanError {
                 format!("area \"{area}\": every grid point lies inside furniture or another area"),
                 "move the area, or give it a finer grid".to_owned(),
                 place,
+            ),
+            Self::TooManyPoints { rooms, points } => (
+                format!("room \"{rooms}\": {points} points and more are asked for, {} at most", grid::MAX_POINTS),
+                "lengths are metres, in a CAD file too; else give the areas coarser grids: grid = { step = 1 }"
+                    .to_owned(),
+                &None,
             ),
             Self::NoRow { standard, row, by } => (
                 format!("norm {standard} has no row \"{row}\" (asked for by {by})"),
@@ -225,7 +242,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
     areas::plan(project, world, &mut plan, &mut errors);
     for (index, viewpoint) in world.viewpoints.iter().enumerate() {
         let indices = indices(world, index);
-        for &direction in &viewpoint.directions {
+        for (&direction, &azimuth_deg) in viewpoint.directions.iter().zip(&viewpoint.azimuths_deg) {
             let row = plan.ask(Receiver {
                 point: viewpoint.eye,
                 lift: DVec3::ZERO,
@@ -236,6 +253,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 viewpoint: index,
                 eye: viewpoint.eye,
                 direction,
+                azimuth_deg,
                 row,
                 indices: indices.clone(),
                 light_scene: viewpoint.light_scene.unwrap_or(0),

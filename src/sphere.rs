@@ -38,9 +38,32 @@ pub fn from_azimuth_tilt(azimuth_deg: f64, tilt_deg: f64) -> DVec3 {
     DVec3::new(cos_t * cos_a, cos_t * sin_a, sin_t)
 }
 
+/// Azimuth from +x towards +y and tilt above the horizon of a unit direction, degrees, rounded to 1e-9, so that
+/// what was written as 30 is 30 again.
+pub fn azimuth_tilt_deg(direction: DVec3) -> [f64; 2] {
+    let tilt = direction.z.clamp(-1.0, 1.0).asin();
+    [direction.y.atan2(direction.x), tilt].map(|angle| rounded_deg(angle.to_degrees()))
+}
+
+/// An angle to 1e-9 degrees, without a minus before a zero.
+pub fn rounded_deg(angle_deg: f64) -> f64 {
+    (angle_deg * 1e9).round() / 1e9 + 0.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Catches: 29.999999999999996° and −0°.
+    #[test]
+    fn round_angles_come_back_round() {
+        for azimuth_deg in (-179..=180).map(f64::from) {
+            for tilt_deg in [-60.0, -30.0, 0.0, 0.1, 12.5, 30.0, 45.0] {
+                let found = azimuth_tilt_deg(from_azimuth_tilt(azimuth_deg, tilt_deg));
+                assert_eq!(found.map(f64::to_bits), [azimuth_deg, tilt_deg].map(|x| (x + 0.0).to_bits()));
+            }
+        }
+    }
 
     #[test]
     fn frames_are_right_handed_and_orthonormal() {

@@ -69,7 +69,7 @@ fn seen(scene: &Scene, point: DVec3, direction: DVec3) -> Vec<(String, f64, f64)
     let narrow = Projection::Perspective { horizontal_deg: 0.1, vertical_deg: 0.1 };
     let view = View::new(narrow, point, direction, up).expect("the view is valid");
     let exposure = expose(scene, 1);
-    let image = render(&exposure.picture(&[1.0]), &view, [1, 1], Detail::Exact, &|_| ()).0;
+    let image = render(&exposure.picture(&[1.0], Detail::Exact), &view, [1, 1], &|_| ()).0;
     all.push(("picture".to_owned(), image.luminance_cd_m2[0], 0.0));
     all
 }

@@ -492,3 +492,68 @@ fn at_99_percent_the_surfaces_absorb_what_the_lamp_gives() {
     let se: f64 = balance.surfaces.iter().map(|s| s.incident.se).sum();
     check("incident", incident, se, 100_000.0, 0.15);
 }
+
+/// Catches: a wall measured on its back, since its edges were listed the other way round; a ceiling likewise.
+#[test]
+fn walls_and_ceilings_are_measured_in_the_room_whichever_way_their_edges_run() {
+    let area = |name: &str, shape: &str| {
+        format!(
+            "[[area]]\nname = \"{name}\"\nkind = \"surface\"\n{shape}\ngrid = {{ count = [3, 1] }}\nquantities = [\"E_n\"]\n"
+        )
+    };
+    let wall = [("u = [4, 0, 0], v = [0, 0, 3]", "a"), ("u = [0, 0, 3], v = [4, 0, 0]", "b")];
+    let ceiling = [("u = [4, 0, 0], v = [0, 4, 0]", "c"), ("u = [0, 4, 0], v = [4, 0, 0]", "d")];
+    let rect = |z: f64, (edges, name): (&str, &str)| {
+        area(name, &format!("rect = {{ origin = [0, 0.001, {z}], {edges} }}"))
+    };
+    let polygon = area("p", "polygon = [[0, 0, 3], [4, 0, 3], [4, 4, 3], [0, 4, 3]]");
+    let rest: String = wall.iter().map(|one| rect(0.0, *one)).collect::<String>()
+        + &ceiling.iter().map(|one| rect(2.999, *one)).collect::<String>()
+        + &polygon;
+    let outcome = few(&black("", "aim = [0, -1, 1]", &rest));
+    let mean = |name: &str| {
+        let values = points(&outcome, name, "E_n", "all");
+        values.iter().map(|point| point.value).sum::<f64>() / values.len() as f64
+    };
+    for [one, other] in [["a", "b"], ["c", "d"], ["c", "p"]] {
+        assert!(
+            mean(one) > 20.0 && (mean(one) / mean(other) - 1.0).abs() < 0.5,
+            "{one} {}, {other} {}",
+            mean(one),
+            mean(other)
+        );
+    }
+}
+
+/// Catches: a grid of a corridor with a bend that has one line of points, or none; a strip round a large task
+/// whose points all lie on the task's edge.
+#[test]
+fn narrow_areas_have_points_across_whatever_their_outline() {
+    let room = "[[room]]\nname = \"C\"\nfootprint = [[0, 0], [20, 0], [20, 1.2], [1.2, 1.2], [1.2, 20], [0, 20]]\nheight = 3\nrow = \"9.1\"\n\
+                reflectances = { floor = 0, walls = 0, ceiling = 0 }\n[luminaires.A]\npoint = { flux = 1000 }\n\
+                [[place]]\nluminaire = \"A\"\nat = [0.6, 0.6, 2.9]\n[norm]\nstandard = \"en-12464-1-2021\"\n";
+    let outcome = few(room);
+    let plane = outcome.rooms[0].areas.iter().find(|area| area.name.contains("working plane")).expect("made");
+    let kept: Vec<_> = plane.grid.points.iter().filter(|point| point.excluded.is_none()).collect();
+    let far = kept.iter().filter(|point| point.position.x > 10.0).map(|point| point.position.y);
+    let mut across: Vec<i64> = far.map(|y| (1e6 * y).round() as i64).collect();
+    across.sort_unstable();
+    across.dedup();
+    assert!(across.len() >= 4, "lines across the corridor: {across:?}");
+    let hall = "[scene]\nbox = { size = [16, 16, 4], floor = 0, walls = 0, ceiling = 0 }\n[luminaires.A]\npoint = { flux = 1000 }\n\
+                [[place]]\nluminaire = \"A\"\nat = [8, 8, 3.9]\n[norm]\nstandard = \"en-12464-1-2021\"\nrow = \"34.2\"\n\
+                [[area]]\nname = \"Task\"\nrect = { origin = [2, 2, 0.8], u = [12, 0, 0], v = [0, 12, 0] }\n\
+                [[area]]\nname = \"Strip\"\nkind = \"surrounding\"\nof = \"Task\"\n";
+    let outcome = few(hall);
+    let strip = outcome.rooms[0].areas.iter().find(|area| area.name == "Strip").expect("drawn");
+    let kept =
+        || strip.grid.points.iter().filter(|point| point.excluded.is_none()).map(|point| point.position);
+    let sides: [fn(glam::DVec3) -> f64; 4] = [|p| 2.0 - p.x, |p| p.x - 14.0, |p| 2.0 - p.y, |p| p.y - 14.0];
+    for side in sides {
+        let deep: Vec<f64> = kept().map(side).filter(|depth| *depth > 0.0).collect();
+        assert!(
+            deep.len() >= 40 && deep.iter().any(|d| *d < 0.25) && deep.iter().any(|d| *d > 0.25),
+            "{deep:?}"
+        );
+    }
+}

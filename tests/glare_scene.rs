@@ -36,7 +36,7 @@ fn integrals(lit: impl Fn(DVec3) -> bool) -> [f64; 2] {
             sums[0] += piece_sr;
             match PositionModel::Table.position(DVec3::X, DVec3::Z, direction) {
                 Position::Index(p) | Position::BelowTable(p) => sums[1] += piece_sr / (p * p),
-                Position::Ignored => {}
+                Position::OffTable(_) => {}
             }
         }
     }
@@ -112,7 +112,7 @@ fn squares_of_known_luminance_give_every_index_its_closed_form() {
     let model = PositionModel::Table;
     let p = directions.iter().map(|&direction| match model.position(DVec3::X, DVec3::Z, direction) {
         Position::Index(p) | Position::BelowTable(p) => p,
-        Position::Ignored => panic!("inside the table"),
+        Position::OffTable(_) => panic!("inside the table"),
     });
     let p: Vec<f64> = p.collect();
     let (l, l_b, e_v) = (5000.0f64, view.background_cd_m2, view.e_v_lx);

@@ -154,3 +154,39 @@ fn polar_and_convert() {
     assert_eq!(std::fs::read_to_string(path("sound.ies")).expect("still there"), SOUND);
     assert!(!path("b.ldt").exists() && !path("a.txt").exists());
 }
+
+/// Catches: a table without its column `file` because one of two files failed; a file that cannot be opened missing
+/// from a list for programs; an SVG written into a file that is called a PNG.
+#[test]
+fn the_shape_of_what_is_printed_follows_from_what_is_named() {
+    let folder = folder();
+    let heads = |files: &[&str]| {
+        let table = run(folder.path(), &[&["lamp", "ugr-table", "--format", "csv"], files].concat());
+        (table.status.code(), out(&table).lines().next().unwrap_or_default().starts_with("file,"))
+    };
+    assert_eq!(heads(&["sound.ies"]), (Some(0), false));
+    assert_eq!(heads(&["sound.ies", "sound.ies"]), (Some(0), true));
+    for failing in ["rated.ies", "order.ies", "nofile.ies"] {
+        assert_eq!(heads(&["sound.ies", failing]), (Some(2), true), "{failing}");
+    }
+    for command in ["info", "lint"] {
+        let listed = run(folder.path(), &["lamp", command, "--format", "json", "sound.ies", "nofile.ies"]);
+        assert_eq!(listed.status.code(), Some(2));
+        let list: Vec<serde_json::Value> = serde_json::from_str(&out(&listed)).expect("JSON");
+        let last = list.last().expect("an entry");
+        assert_eq!(last["file"], "nofile.ies", "{command}: {last}");
+        assert!(last.to_string().contains("cannot be opened"), "{last}");
+        assert!(String::from_utf8_lossy(&listed.stderr).contains("nofile.ies"));
+    }
+    let drawn = run(folder.path(), &["lamp", "polar", "sound.ies", "--out", "a.png"]);
+    assert!(drawn.status.code() == Some(2) && !folder.path().join("a.png").exists());
+    assert!(String::from_utf8_lossy(&drawn.stderr).contains("hint: name a file .svg"));
+}
+
+/// Catches: what a sum of rounded numbers leaves over, printed with all its zeros.
+#[test]
+fn nothing_is_printed_as_nothing() {
+    let folder = folder();
+    let told = out(&run(folder.path(), &["lamp", "info", "sound.ies"]));
+    assert!(!told.contains("0.000000"), "{told}");
+}

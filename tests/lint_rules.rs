@@ -66,16 +66,17 @@ fn tm33() -> Vec<u8> {
     format!("<IESTM33-22>\n{}{}</IESTM33-22>\n", emitter(spectrum), emitter("")).into_bytes()
 }
 
-/// A type B file of Lambert's law about −z, I = 318.3 cos V cos H.
-fn type_b() -> Vec<u8> {
-    let angles: Vec<f64> = (-18..=18).map(|k| 5.0 * f64::from(k)).collect();
+/// A type B file of Lambert's law about −z, I = 318.3 cos V cos H, measured up to ±`last_deg`.
+fn type_b(last_deg: i32) -> Vec<u8> {
+    let angles: Vec<f64> = (-last_deg / 5..=last_deg / 5).map(|k| 5.0 * f64::from(k)).collect();
     let cos = |deg: &f64| deg.to_radians().cos().max(0.0);
     let list = angles.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
     let plane = |h: &f64| {
         angles.iter().map(|v| format!("{:.2}", 318.3 * cos(v) * cos(h))).collect::<Vec<_>>().join(" ")
     };
     let planes = angles.iter().map(plane).collect::<Vec<_>>().join("\n");
-    let head = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 37 37 2 2 -0.2 -0.2 0\n1 1 10";
+    let count = angles.len();
+    let head = format!("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 {count} {count} 2 2 -0.2 -0.2 0\n1 1 10");
     format!("{head}\n{list}\n{list}\n{planes}\n").into_bytes()
 }
 
@@ -158,6 +159,7 @@ fn cases() -> Vec<Case> {
         case(&["odd-angle"], 53, ldt(&[(53, "31")])),
         case(&["efficacy"], 4, ies("1 1 10", "1 1 1")),
         case(&["efficacy"], 32, ldt(&[(32, "4000")])),
+        case(&["implausible-size"], 3, ies("-0.2 -0.2", "300 1200")),
         case(&["implausible-luminance"], 3, ies("-0.2 -0.2", "-0.0002 -0.0002")),
         case(&["lor-above-one"], 23, ldt(&[(23, "101"), (29, "3560"), (24, "1.1236")])),
         case(&["lamp-sets"], 27, sets.into_bytes()),
@@ -170,7 +172,10 @@ fn cases() -> Vec<Case> {
         case(&["trailing-data"], 8, [ies("IESNA", "IESNA"), b"17 21".to_vec()].concat()),
         case(&["opening-approximated", "zero-area"], 3, ies("-0.2 -0.2 0", "0 1.2 0")),
         case(&["mixed-line-ends"], 4, crlf(ies("IESNA", "IESNA"), 3)),
-        case(&["resampled"], 6, type_b()),
+        case(&["resampled"], 6, type_b(90)),
+        case(&["missing-range", "resampled"], 6, type_b(45)),
+        case(&["unreadable"], 29, ldt(&[(29, "4 000")])),
+        case(&["unreadable"], 16, ldt(&[(16, "1 200")])),
         case(&["emitter"], None, gldf(&ldt(&[]))),
         case(&["ignored-data", "plane-orientation", "emitters-added"], 41, tm33()),
         case(&["plane-orientation", "ignored-data", "emitters-added"], 1, tm33()),

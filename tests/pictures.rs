@@ -39,10 +39,10 @@ fn plates_are_as_bright_as_sobolev_says() {
     };
     let (truth, other) = (tabulated(0.5), tabulated(0.51));
     let exposure = expose(&world.scene, 1);
-    let picture = exposure.picture(&weights);
+    let picture = exposure.picture(&weights, Detail::Exact);
     for camera in &world.cameras {
         let size = [120, 80];
-        let (image, _) = render(&picture, &camera.view, size, Detail::Exact, &|_| {});
+        let (image, _) = render(&picture, &camera.view, size, &|_| {});
         let mut found = Vec::new();
         for (index, luminance) in image.luminance_cd_m2.iter().enumerate() {
             let at = [index % size[0], index / size[0]].map(|k| k as f64 + 0.5);
@@ -75,7 +75,7 @@ fn a_picture_repeats_for_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
             let exposure = expose(scene, 1);
-            render(&exposure.picture(&weights), &view, [40, 40], Detail::Exact, &|_| {}).0.luminance_cd_m2
+            render(&exposure.picture(&weights, Detail::Exact), &view, [40, 40], &|_| {}).0.luminance_cd_m2
         })
     };
     assert_eq!(taken(1), taken(2));

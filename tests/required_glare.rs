@@ -101,6 +101,31 @@ fn without_a_source_in_any_direction_there_is_no_verdict_but_a_reason() {
     assert_eq!(found.value.as_ref().unwrap_err().reason, "no light source is visible");
 }
 
+/// Catches: a lamp nearly overhead, for which the table of CIE 117 has no P, that vanishes from indices which
+/// have no table, so that a requirement on them passes; a UGR that counts it.
+#[test]
+fn what_ugr_ignores_still_counts_for_other_indices() {
+    let text = "[scene]\nbox = { size = [8, 6, 3], floor = 0.2, walls = 0.5, ceiling = 0.7 }\n\
+                [luminaires.A]\nlambert = { flux = 3600 }\narea = { rect = [0.2, 0.2] }\n\
+                [[place]]\nluminaire = \"A\"\nat = [4.2, 3, 2.9]\n\
+                [[viewpoint]]\nname = \"Seat\"\neye = [3.5, 2.4, 1.2]\ndirection = [1, 0, 0]\n\
+                indices = [\"L_veil_SH\", \"E_dir\", \"DGP\"]\n";
+    let outcome = run(&format!("{text}{}", require("L_veil_SH", "max = 0.05")), &[], 32, Effort::default());
+    let value = |key: &str| values(&outcome, key)[0];
+    let towards = glam::DVec3::new(0.7, 0.6, 1.7).normalize();
+    let theta_deg = towards.x.acos().to_degrees();
+    let expected = 10.0 * value("E_dir") / (theta_deg * theta_deg);
+    assert!(
+        value("E_dir") > 60.0 && (value("L_veil_SH") / expected - 1.0).abs() < 0.02,
+        "{}",
+        value("L_veil_SH")
+    );
+    assert_eq!(of(&outcome, "L_veil_SH").verdict, Verdict::Fail);
+    let view = outcome.rooms[0].viewpoints.first().unwrap();
+    let reason = &view.ugr.as_ref().unwrap_err().reason;
+    assert!(reason.starts_with("all visible sources lie where the CIE 117 table"), "{reason}");
+}
+
 /// Catches: an index that the reports of machines or people leave out, or name as another quantity.
 #[test]
 fn reports_name_the_index() {

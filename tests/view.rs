@@ -21,7 +21,7 @@ fn fisheye(eye: DVec3, direction: DVec3) -> View {
 }
 
 fn picture(scene: &Scene, weights: &[f64], view: &View, size: [usize; 2], detail: Detail) -> LuminanceImage {
-    render(&expose(scene, 1).picture(weights), view, size, detail, &|_| {}).0
+    render(&expose(scene, 1).picture(weights, detail), view, size, &|_| {}).0
 }
 
 /// E_v at the eye by the solver: value and standard error.

@@ -2,7 +2,7 @@
 //! method, declaration.
 
 use super::Context;
-use crate::glare::source::NO_SOURCE;
+use crate::glare::source::nothing_glares;
 use crate::luminaire::LuminaireType;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{self, Gauged, area, intensity, room_ugr, view};
@@ -211,7 +211,7 @@ impl Context<'_> {
         for &index in &views {
             let (gauged, notes) = self.of_view(room, index, planned, each);
             let value = match &gauged.value {
-                Err(undefined) if undefined.reason == NO_SOURCE => {
+                Err(undefined) if nothing_glares(undefined) => {
                     dark = Some(gauged);
                     continue;
                 }

@@ -10,6 +10,7 @@ use crate::plan::PlannedRoom;
 use crate::project::Room;
 use crate::quantity::{Quantity, Statistic};
 use crate::scene::Channel;
+use crate::sphere::azimuth_tilt_deg;
 
 impl Context<'_> {
     /// All that the report shows of a room, and the room's values in canonical order.
@@ -103,7 +104,6 @@ impl Context<'_> {
             for (number, light_scene) in self.project.light_scenes.iter().enumerate() {
                 let glare = self.glare(room, index, number, self.alpha, &entry.indices);
                 let d = entry.direction;
-                let azimuth_deg = d.y.atan2(d.x).to_degrees();
                 values.push(Value {
                     room: self.world.rooms[room].name.clone(),
                     subject: entry.name.clone(),
@@ -134,8 +134,8 @@ impl Context<'_> {
                     light_scene: light_scene.name.clone(),
                     eye: entry.eye,
                     direction: d,
-                    azimuth_deg: if azimuth_deg == 0.0 { 0.0 } else { azimuth_deg },
-                    tilt_deg: d.z.clamp(-1.0, 1.0).asin().to_degrees(),
+                    azimuth_deg: entry.azimuth_deg,
+                    tilt_deg: azimuth_tilt_deg(d)[1],
                     ugr: glare.ugr.interval(),
                     convention: Convention::default().words(),
                     background_cd_m2: glare.background_cd_m2,

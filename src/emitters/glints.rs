@@ -178,7 +178,7 @@ impl Look<'_> {
     fn along(&self, direction: DVec3, rng: &mut Rng) -> Option<Seen> {
         let scene = self.emitters.scene;
         let reach = f64::INFINITY;
-        let (distance_m, triangle) = self.plane.meet(scene, self.eye, direction, reach)?;
+        let (distance_m, triangle) = self.plane.meet(self.eye, direction, reach)?;
         let lift = scene.tracer.offset_m();
         let passed = scene.tracer.transmittance(self.eye, direction, distance_m - 2.0 * lift, &[]);
         if !(passed > 0.0 && self.emitters.lights(self.source, triangle)) {

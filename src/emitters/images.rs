@@ -1,8 +1,10 @@
 //! Planar specular surfaces and the images of luminaires in them. Light that is reflected exactly
 //! once by such a plane is owned by its image; more reflections are found by following rays.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
+use super::{Arrival, Emitters, Mirror, Source};
+use crate::geometry::trace::Tracer;
 use crate::material::Bsdf;
 use crate::scene::Scene;
 
@@ -12,73 +14,65 @@ use crate::scene::Scene;
 const MOST_PLANES: usize = 12;
 const LEAST_SHARE: f64 = 2e-4;
 
-/// Triangles of specular material in one plane.
-#[derive(Clone, Debug)]
-pub struct Mirror {
-    /// Unit normal of the plane.
-    pub normal: DVec3,
-    /// normal · point for points of the plane, m.
-    pub offset_m: f64,
-    /// Triangles in the plane.
-    pub triangles: Vec<u32>,
-    /// Probability with which a random estimate considers the images in it: faint reflections (clear
-    /// panes) are taken more rarely and weighted up, which saves more time than it adds noise.
-    pub chance: f64,
-    /// Centre and radius of a ball around them, m.
-    centre: DVec3,
-    radius_m: f64,
-}
-
-impl Mirror {
-    /// The image of a point.
-    pub fn image(&self, point: DVec3) -> DVec3 {
-        point - 2.0 * (point.dot(self.normal) - self.offset_m) * self.normal
+impl Emitters<'_> {
+    /// Reflectance of an image's plane along a direction; 1 of a plane of several materials, and of a luminaire
+    /// itself.
+    pub fn reflectance(&self, source: &Source, direction: DVec3) -> f64 {
+        let plane = source.mirror.map(|mirror| &self.mirrors[mirror]).filter(|plane| plane.is_uniform);
+        plane.map_or(1.0, |plane| {
+            let cos = direction.dot(plane.normal).abs();
+            self.scene.bsdf(plane.triangles[0]).specular(cos).map_or(0.0, |(reflectance, _)| reflectance)
+        })
     }
 
-    /// The linear part of the reflection, I − 2 n nᵀ.
-    pub fn reflection(&self) -> DMat3 {
-        let n = self.normal;
-        DMat3::IDENTITY - DMat3::from_cols(n * n.x, n * n.y, n * n.z) * 2.0
-    }
-
-    /// Whether an image of an opening of `radius_m` about `image` may be seen from `point`.
-    #[inline]
-    pub fn may_show(&self, point: DVec3, image: DVec3, radius_m: f64) -> bool {
-        let here = point.dot(self.normal) - self.offset_m;
-        let there = image.dot(self.normal) - self.offset_m;
-        if there.abs() <= radius_m {
-            return true;
-        }
-        if here * there >= 0.0 {
+    /// Whether nothing stands between places about `facing` and an image all of which they see in `met` of its
+    /// plane. A *yes* is certain.
+    pub fn is_clear_by_mirror(
+        &self,
+        source: &Source,
+        places: &[DVec3],
+        facing: DVec3,
+        met: [DVec3; 4],
+    ) -> bool {
+        let (tracer, body) = (&self.scene.tracer, &self.luminaire(source).body);
+        let Some(plane) = source.mirror.map(|mirror| &self.mirrors[mirror]) else { return false };
+        let own = |&triangle: &u32| body.contains(&tracer.surface(triangle));
+        if !plane.is_uniform || plane.triangles.iter().any(own) {
             return false;
         }
-        // Where the ray to another point of the opening meets the plane: it is turned by at most
-        // `radius_m`, and cut earlier or later where that point lies nearer to the plane or farther.
-        let towards = image - point;
-        let share = here / (here - there);
-        let largest = here.abs() / (here.abs() + there.abs() - radius_m);
-        let at = point + towards * share;
-        let reach_m = self.radius_m + largest * radius_m + (largest - share) * towards.length();
-        (at - self.centre).length_squared() <= reach_m * reach_m
+        let side = plane.normal * (places[0].dot(plane.normal) - plane.offset_m).signum();
+        let met = met.map(|corner| corner + side * tracer.offset_m());
+        let lamp = self.corners(&self.sources[source.luminaire]);
+        tracer.is_clear(places, &met, &[facing, side], &[]) && tracer.is_clear(&met, &lamp, &[side], body)
     }
 
-    /// Where the ray meets the plane inside one of its triangles, before `reach_m`.
-    pub fn meet(&self, scene: &Scene, origin: DVec3, direction: DVec3, reach_m: f64) -> Option<(f64, u32)> {
-        let distance_m = (self.offset_m - origin.dot(self.normal)) / direction.dot(self.normal);
-        if !(distance_m > 0.0 && distance_m < reach_m) {
-            return None;
+    pub(super) fn passed_by_mirror(
+        &self,
+        mirror: &Mirror,
+        tracer: &Tracer,
+        point: DVec3,
+        arrival: &Arrival,
+        blind: &[u32],
+    ) -> f64 {
+        let met = arrival.mirrored.or_else(|| mirror.meet(point, arrival.direction, arrival.distance_m));
+        let Some((distance_m, triangle)) = met else { return 0.0 };
+        // Its own light passes a luminaire's body and is not reflected by it.
+        if blind.contains(&tracer.surface(triangle)) {
+            return 0.0;
         }
-        let at = origin + direction * distance_m;
-        if (at - self.centre).length_squared() > self.radius_m * self.radius_m {
-            return None;
+        let cos = arrival.direction.dot(mirror.normal).abs();
+        let Some((reflectance, _)) = self.scene.bsdf(triangle).specular(cos) else { return 0.0 };
+        let lift = tracer.offset_m();
+        // The body lets light pass that has not yet met the mirror.
+        let before = tracer.transmittance(point, arrival.direction, distance_m - lift, &[]);
+        if !(before * reflectance > 0.0) {
+            return 0.0;
         }
-        let inside = |triangle: u32| {
-            let [a, b, c] = scene.mesh.corners(triangle as usize);
-            let side = |p: DVec3, q: DVec3| (q - p).cross(at - p).dot(self.normal);
-            let (u, v, w) = (side(a, b), side(b, c), side(c, a));
-            (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0)
-        };
-        self.triangles.iter().copied().find(|&t| inside(t)).map(|t| (distance_m, t))
+        let side = mirror.normal * -arrival.direction.dot(mirror.normal).signum();
+        let turned = point + arrival.direction * distance_m + side * lift;
+        let onward = arrival.direction - 2.0 * arrival.direction.dot(mirror.normal) * mirror.normal;
+        let rest = arrival.distance_m - distance_m - 2.0 * lift;
+        reflectance * before * tracer.transmittance(turned, onward, rest, blind)
     }
 }
 
@@ -114,17 +108,7 @@ pub fn planes(scene: &Scene, most: usize, belongs: impl Fn(&Bsdf) -> bool) -> Ve
                 found[known].1 += area_m2;
             }
             None if found.len() < 4096 => {
-                found.push((
-                    Mirror {
-                        normal,
-                        offset_m,
-                        triangles: vec![triangle],
-                        chance: 1.0,
-                        centre: DVec3::ZERO,
-                        radius_m: 0.0,
-                    },
-                    area_m2,
-                ));
+                found.push((Mirror::in_plane(normal, offset_m, triangle), area_m2));
             }
             None => {}
         }
@@ -136,13 +120,7 @@ pub fn planes(scene: &Scene, most: usize, belongs: impl Fn(&Bsdf) -> bool) -> Ve
     found.retain(|(_, area_m2)| has_points || *area_m2 >= LEAST_SHARE * total_m2);
     found.truncate(most);
     for (mirror, _) in &mut found {
-        let triangles = mirror.triangles.clone();
-        let corners = || triangles.iter().flat_map(|&t| mesh.corners(t as usize));
-        let reflectances = mirror.triangles.iter().filter_map(|&t| scene.bsdf(t).specular(1.0));
-        let reflectance = reflectances.map(|(reflected, _)| reflected).fold(0.0, f64::max);
-        mirror.chance = (2.5 * reflectance).clamp(0.2, 1.0);
-        mirror.centre = corners().sum::<DVec3>() / (3.0 * mirror.triangles.len() as f64);
-        mirror.radius_m = corners().map(|p| p.distance(mirror.centre)).fold(0.0, f64::max) * (1.0 + 1e-9);
+        mirror.settle(scene);
     }
     found.into_iter().map(|(mirror, _)| mirror).collect()
 }

@@ -92,7 +92,7 @@ fn passed_twice(
     let (mut origin, mut direction, mut rest_m, mut passed) =
         (point, arrival.direction, arrival.distance_m, 1.0);
     for mirror in pair.map(|index| &emitters.mirrors[index]) {
-        let Some((distance_m, triangle)) = mirror.meet(scene, origin, direction, rest_m) else { return 0.0 };
+        let Some((distance_m, triangle)) = mirror.meet(origin, direction, rest_m) else { return 0.0 };
         let cos = direction.dot(mirror.normal);
         let Some((reflectance, _)) = scene.bsdf(triangle).specular(cos.abs()) else { return 0.0 };
         passed *= reflectance * scene.tracer.transmittance(origin, direction, distance_m - lift, &[]);

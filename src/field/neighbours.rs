@@ -109,7 +109,9 @@ fn pairs(side: usize, sides: &[Place], cells: &Cells, tracer: &Tracer) -> Vec<Pa
 struct Cells {
     /// Sizes that occur, from the smallest: each holds edges from 2ⁿ to 2ⁿ⁺¹ m.
     sizes: Vec<i32>,
-    sorted: Vec<(i32, [i64; 3], u32)>,
+    /// Cells that hold sides, in order, with the first of their members.
+    filled: Vec<(i32, [i64; 3], u32)>,
+    members: Vec<u32>,
 }
 
 impl Cells {
@@ -126,7 +128,20 @@ impl Cells {
         sorted.sort_unstable();
         let mut sizes: Vec<i32> = sorted.iter().map(|(size, ..)| *size).collect();
         sizes.dedup();
-        Self { sizes, sorted }
+        let members: Vec<u32> = sorted.iter().map(|(.., side)| *side).collect();
+        let mut filled = Vec::new();
+        for (number, (size, cell, _)) in sorted.into_iter().enumerate() {
+            if filled.last().is_none_or(|(last, at, _)| (*last, *at) != (size, cell)) {
+                filled.push((size, cell, number as u32));
+            }
+        }
+        Self { sizes, filled, members }
+    }
+
+    /// Sides in a cell.
+    fn within(&self, cell: usize) -> &[u32] {
+        let last = self.filled.get(cell + 1).map_or(self.members.len(), |(.., first)| *first as usize);
+        &self.members[self.filled[cell].2 as usize..last]
     }
 
     fn size(edge_m: f64) -> i32 {
@@ -142,13 +157,14 @@ impl Cells {
         let (own_size, place) = (Self::size(own.edge_m), own.centre);
         self.sizes.iter().filter(move |size| **size >= own_size).flat_map(move |&size| {
             let [x, y, z] = Self::cell(place, size);
-            (0..27i64).flat_map(move |k| {
-                let key = (size, [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
-                let first = self.sorted.partition_point(|(size, cell, _)| (*size, *cell) < key);
-                self.sorted[first..]
-                    .iter()
-                    .take_while(move |(size, cell, _)| (*size, *cell) == key)
-                    .map(|(.., side)| *side)
+            // Cells that differ in z alone lie together.
+            (0..9i64).flat_map(move |k| {
+                let key = move |z: i64| (size, [x + k % 3 - 1, y + k / 3 - 1, z]);
+                let first = self.filled.partition_point(|(size, cell, _)| (*size, *cell) < key(z - 1));
+                let row =
+                    self.filled[first..].iter().take_while(move |(s, cell, _)| (*s, *cell) <= key(z + 1));
+                row.enumerate()
+                    .flat_map(move |(number, _)| self.within(first + number).iter().copied())
                     .filter(move |side| size > own_size || *side > number)
             })
         })

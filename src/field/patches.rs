@@ -35,6 +35,25 @@ struct Member {
     part: Part,
     /// Area within the patch up to here, m².
     cumulative_m2: f64,
+    /// First corner of the triangle and its edges to the others, m; its unit normal. Kept here since places
+    /// are drawn by the million, each on another patch.
+    corner: DVec3,
+    edges: [DVec3; 2],
+    normal: DVec3,
+}
+
+impl Member {
+    fn new(mesh: &Mesh, triangle: u32, part: Part, cumulative_m2: f64) -> Self {
+        let [a, b, c] = mesh.corners(triangle as usize);
+        let (normal, _) = mesh.normal_and_area(triangle as usize);
+        Self { triangle, part, cumulative_m2, corner: a, edges: [b - a, c - a], normal }
+    }
+
+    /// The place at weights within the part.
+    fn at(&self, local: [f64; 2]) -> DVec3 {
+        let [s, t] = self.part.at(local);
+        self.corner + self.edges[0] * s + self.edges[1] * t
+    }
 }
 
 /// An affine map from weights within a part to weights of the triangle's second and third corner.
@@ -83,7 +102,7 @@ impl Patches {
                 patches.of_triangle[index] = (patches.nodes.len() as u32, divisions);
                 let share_m2 = area / f64::from(divisions * divisions);
                 for part in 0..divisions * divisions {
-                    patches.add(index as u32, Part::of(part, divisions), share_m2);
+                    patches.add(mesh, index as u32, Part::of(part, divisions), share_m2);
                 }
             } else {
                 let centre = mesh.corners(index).iter().sum::<glam::DVec3>() / 3.0;
@@ -100,8 +119,7 @@ impl Patches {
                 patches.of_triangle[index] = (patches.nodes.len() as u32, 1);
                 patches.nodes.push(patch);
                 total += mesh.normal_and_area(index).1;
-                let (triangle, part) = (index as u32, Part::WHOLE);
-                patches.members.push(Member { triangle, part, cumulative_m2: total });
+                patches.members.push(Member::new(mesh, index as u32, Part::WHOLE, total));
             }
             patches.ranges.push((first, patches.members.len() as u32, node));
         }
@@ -109,11 +127,11 @@ impl Patches {
     }
 
     /// A new patch on a new node.
-    fn add(&mut self, triangle: u32, part: Part, area_m2: f64) {
+    fn add(&mut self, mesh: &Mesh, triangle: u32, part: Part, area_m2: f64) {
         let (member, node) = (self.members.len() as u32, self.nodes.len() as u32);
         self.nodes.push(self.ranges.len() as u32);
         self.ranges.push((member, member + 1, node));
-        self.members.push(Member { triangle, part, cumulative_m2: area_m2 });
+        self.members.push(Member::new(mesh, triangle, part, area_m2));
     }
 
     /// Divides the surfaces of a scene that have a diffuse part.
@@ -130,7 +148,7 @@ impl Patches {
             self.splits.push(patch as u32);
             return Some(vec![patch, next]);
         }
-        let Member { triangle, part, cumulative_m2 } = self.members[first as usize];
+        let Member { triangle, part, cumulative_m2, .. } = self.members[first as usize];
         let edge = part.edges[0][0].abs().max(part.edges[0][1].abs());
         let full = self.nodes.len() + 4 > SPLIT as usize;
         if edge < SMALLEST_EDGE || full {
@@ -142,10 +160,11 @@ impl Patches {
         let area_m2 = 0.25 * cumulative_m2;
         self.nodes.push(patch as u32);
         self.ranges[patch].2 = base;
-        self.members[first as usize] = Member { triangle, part: part.inner(0, 2), cumulative_m2: area_m2 };
+        let own = &mut self.members[first as usize];
+        (own.part, own.cumulative_m2) = (part.inner(0, 2), area_m2);
         let next = self.ranges.len();
         for index in 1..4 {
-            self.add(triangle, part.inner(index, 2), area_m2);
+            self.add(mesh, triangle, part.inner(index, 2), area_m2);
         }
         self.splits.push(patch as u32);
         Some(vec![patch, next, next + 1, next + 2])
@@ -235,35 +254,28 @@ impl Patches {
     }
 
     /// Area-weighted centre of a patch, m, and mean normal of its front (not normalised).
-    pub fn centre(&self, mesh: &Mesh, side: usize) -> (DVec3, DVec3) {
+    pub fn centre(&self, side: usize) -> (DVec3, DVec3) {
         let (first, last, _) = self.ranges[side / 2];
         let (mut centre, mut facing, mut before) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for member in &self.members[first as usize..last as usize] {
-            let [a, b, c] = mesh.corners(member.triangle as usize);
-            let [s, t] = member.part.at([1.0 / 3.0; 2]);
             let area = member.cumulative_m2 - before;
             before = member.cumulative_m2;
-            centre += (a + (b - a) * s + (c - a) * t) * area;
-            facing += mesh.normal_and_area(member.triangle as usize).0 * area;
+            centre += member.at([1.0 / 3.0; 2]) * area;
+            facing += member.normal * area;
         }
         (centre / before, facing / before)
     }
 
     /// Corners of the triangles, or of the part of one, that a patch consists of, m.
-    pub fn outlines<'p>(&'p self, mesh: &'p Mesh, patch: usize) -> impl Iterator<Item = [DVec3; 3]> + 'p {
+    pub fn outlines(&self, patch: usize) -> impl Iterator<Item = [DVec3; 3]> {
         let (first, last, _) = self.ranges[patch];
-        self.members[first as usize..last as usize].iter().map(|member| {
-            let [a, b, c] = mesh.corners(member.triangle as usize);
-            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|corner| {
-                let [s, t] = member.part.at(corner);
-                a + (b - a) * s + (c - a) * t
-            })
-        })
+        let members = self.members[first as usize..last as usize].iter();
+        members.map(|member| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|corner| member.at(corner)))
     }
 
     /// Distance from `centre` to the farthest corner of a patch, m.
-    pub fn radius_m(&self, mesh: &Mesh, side: usize, centre: DVec3) -> f64 {
-        self.outlines(mesh, side / 2).flatten().map(|corner| corner.distance(centre)).fold(0.0, f64::max)
+    pub fn radius_m(&self, side: usize, centre: DVec3) -> f64 {
+        self.outlines(side / 2).flatten().map(|corner| corner.distance(centre)).fold(0.0, f64::max)
     }
 
     /// Places by which the evenness of a patch is judged: the centres of its quarters, or of up to
@@ -290,16 +302,14 @@ impl Patches {
     }
 
     /// A place on the patch, uniform in area.
-    pub fn place(&self, mesh: &Mesh, side: usize, u: [f64; 3]) -> Place {
+    pub fn place(&self, side: usize, u: [f64; 3]) -> Place {
         let (first, last, _) = self.ranges[side / 2];
         let members = &self.members[first as usize..last as usize];
         let target = u[0] * members[members.len() - 1].cumulative_m2;
         let chosen = members.partition_point(|member| member.cumulative_m2 <= target).min(members.len() - 1);
-        let Member { triangle, part, .. } = members[chosen];
-        let [a, b, c] = mesh.corners(triangle as usize);
         let root = u[1].sqrt();
-        let [s, t] = part.at([root * (1.0 - u[2]), root * u[2]]);
-        Place { point: a + (b - a) * s + (c - a) * t, normal: mesh.normal_and_area(triangle as usize).0 }
+        let place = members[chosen].at([root * (1.0 - u[2]), root * u[2]]);
+        Place { point: place, normal: members[chosen].normal }
     }
 }
 
@@ -378,7 +388,7 @@ mod tests {
         let mut rng = Rng::new(1, 1, 1);
         for side in 0..patches.sides() {
             for _ in 0..20 {
-                let place = patches.place(&mesh, side, rng.uniforms());
+                let place = patches.place(side, rng.uniforms());
                 // Find the triangle and weights again by brute force.
                 let found = (0..mesh.triangles.len()).any(|index| {
                     let [a, b, c] = mesh.corners(index);

@@ -12,7 +12,6 @@ use rayon::prelude::*;
 
 use super::Patches;
 use super::neighbours::{Place, REACH, neighbours};
-use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::Tracer;
 
 /// Keeps the fit of a gradient from following noise where neighbours are few.
@@ -59,7 +58,6 @@ impl Smooth {
     /// those for which it is `None` stay by themselves. `part` says where the middle of a side is to
     /// which only a part of the patch belongs, and a place that does belong.
     pub fn new(
-        mesh: &Mesh,
         tracer: &Tracer,
         patches: &Patches,
         values: &[f64],
@@ -72,11 +70,11 @@ impl Smooth {
         let places: Vec<Place> = (0..count)
             .into_par_iter()
             .map(|side| {
-                let (middle, front) = patches.centre(mesh, side);
+                let (middle, front) = patches.centre(side);
                 let [centre, clear] = part(side).unwrap_or([middle; 2]);
                 let facing = front.normalize_or_zero() * if side.is_multiple_of(2) { 1.0 } else { -1.0 };
                 // Triangles that are joined may lie farther apart than their area tells.
-                let extent_m = (ACROSS * patches.radius_m(mesh, side, middle)).min(mean_m);
+                let extent_m = (ACROSS * patches.radius_m(side, middle)).min(mean_m);
                 let edge_m = patches.area_m2(side).sqrt().max(extent_m).max(f64::MIN_POSITIVE);
                 Place { centre, clear, facing, edge_m, kind: kind(side) }
             })
@@ -218,6 +216,7 @@ impl Smooth {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::mesh::Mesh;
 
     /// A floor of two quads with a wall between them that stands on their common edge.
     fn floor(wall: bool) -> Mesh {
@@ -251,8 +250,8 @@ mod tests {
         let tracer = Tracer::build(mesh, &materials);
         let mut patches = Patches::new(mesh, 0.02, |_| true);
         split(&mut patches);
-        let values: Vec<f64> = (0..patches.sides()).map(|side| value(patches.centre(mesh, side).0)).collect();
-        (Smooth::new(mesh, &tracer, &patches, &values, |_| Some(0), |_| None), patches)
+        let values: Vec<f64> = (0..patches.sides()).map(|side| value(patches.centre(side).0)).collect();
+        (Smooth::new(&tracer, &patches, &values, |_| Some(0), |_| None), patches)
     }
 
     /// Value at the floor's point (x, y).
@@ -294,7 +293,7 @@ mod tests {
     fn patches_of_unlike_size_join() {
         let mesh = floor(false);
         let split = |patches: &mut Patches| {
-            let near = |patches: &Patches, side: usize| patches.centre(&mesh, side).0.x < 1.0;
+            let near = |patches: &Patches, side: usize| patches.centre(side).0.x < 1.0;
             for _ in 0..2 {
                 for patch in (0..patches.len()).filter(|&patch| near(patches, 2 * patch)).collect::<Vec<_>>()
                 {
@@ -335,7 +334,7 @@ mod tests {
             let (smooth, patches) = smooth(&mesh, value);
             let variance = vec![1.0; patches.sides()];
             let inner = |side: usize| {
-                let p = patches.centre(&mesh, side).0;
+                let p = patches.centre(side).0;
                 p.x > 0.5 && p.x < 3.5 && p.y > 0.5 && p.y < 2.5
             };
             (0..patches.sides())

@@ -149,7 +149,7 @@ pub fn to_bytes(worlds: &[(String, &Scene, &StoredField)]) -> Result<Vec<u8>, St
 fn describe(world: usize, scene: &Scene, stored: &StoredField, tensors: &mut Vec<Tensor>) {
     let patches = stored.field.patches();
     let (count, channels) = (patches.len(), scene.channels.len());
-    let centres: Vec<_> = (0..count).map(|patch| patches.centre(&scene.mesh, 2 * patch)).collect();
+    let centres: Vec<_> = (0..count).map(|patch| patches.centre(2 * patch)).collect();
     let name = |what: &str| format!("world{world}.{what}");
     let points = centres.iter().flat_map(|(point, _)| point.to_array());
     tensors.push(Tensor::floats(name("point_m"), vec![count, 3], points));

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use super::field::{Cone, Field, Pixel};
-use super::source::{GlareSource, NO_SOURCE};
+use super::source::GlareSource;
 use crate::units::{Nits, Undefined};
 
 /// Above what luminance a pixel belongs to a glare source.
@@ -145,21 +145,17 @@ fn of_plane_of_angles(place: DVec2) -> DVec3 {
 
 impl Detected {
     /// As a source of the indices, at a position index.
-    pub fn at(&self, position_index: f64) -> GlareSource {
+    pub fn at(&self, position_index: f64, off_table: bool) -> GlareSource {
         GlareSource {
             luminance: self.luminance,
             solid_angle_sr: self.solid_angle_sr,
             position_index,
+            off_table,
             off_axis_deg: super::field::angle(DVec3::Z, self.direction).to_degrees(),
             eye_lx: self.eye_lx,
             extent: None,
         }
     }
-}
-
-/// Whether an index has no value only because nothing glares.
-pub fn nothing_glares(undefined: &Undefined) -> bool {
-    undefined.reason == NO_SOURCE
 }
 
 /// For each member the smallest member of its group, where all that lie within `reach_rad` of each
@@ -190,14 +186,16 @@ fn joined(field: &Field, members: &[u32], reach_rad: f64) -> Vec<u32> {
         }
     }
     let mut groups = Groups::new(cells.len());
-    for first in 0..cells.len() {
-        for offset in forward_offsets() {
+    // Near cells first: what they join need not be compared from afar.
+    for offset in forward_offsets() {
+        for first in 0..cells.len() {
             let wanted: [i64; 3] = std::array::from_fn(|axis| cells[first].key[axis] + offset[axis]);
             let Ok(second) = cells.binary_search_by_key(&wanted, |cell| cell.key) else { continue };
             if groups.root(first) == groups.root(second) || cells[first].gap(&cells[second]) > chord {
                 continue;
             }
-            let touches = order[cells[first].start..cells[first].end].iter().any(|&a| {
+            let own = &order[cells[first].start..cells[first].end];
+            let touches = own.iter().filter(|&&a| cells[second].distance(at(a)) <= chord).any(|&a| {
                 let others = &order[cells[second].start..cells[second].end];
                 others.iter().any(|&b| (at(a) - at(b)).length() <= chord)
             });
@@ -229,16 +227,23 @@ struct Cell {
 }
 
 impl Cell {
+    /// Distance of a place from the box.
+    fn distance(&self, place: DVec3) -> f64 {
+        (place - place.clamp(self.low, self.high)).length()
+    }
+
     /// Distance between the boxes of two cells.
     fn gap(&self, other: &Self) -> f64 {
         (other.low - self.high).max(self.low - other.high).max(DVec3::ZERO).length()
     }
 }
 
-/// Half of the cells around one that can be within reach, √3 cells away.
-fn forward_offsets() -> impl Iterator<Item = [i64; 3]> {
+/// Half of the cells around one that can be within reach, √3 cells away; the nearest first.
+fn forward_offsets() -> Vec<[i64; 3]> {
     let all = (-2..=2).flat_map(|x| (-2..=2).flat_map(move |y| (-2..=2).map(move |z| [x, y, z])));
-    all.filter(|offset| *offset > [0, 0, 0])
+    let mut half: Vec<[i64; 3]> = all.filter(|offset| *offset > [0, 0, 0]).collect();
+    half.sort_by_key(|offset| offset.iter().map(|x| x * x).sum::<i64>());
+    half
 }
 
 /// Union–find with the smaller root on top.

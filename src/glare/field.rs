@@ -32,7 +32,7 @@ pub struct Field {
     /// For each column the direction of its pixel in the middle row (below the centre where the number of
     /// rows is even); `None` outside the projection.
     pub level: Vec<Option<DVec3>>,
-    /// Pixels that are no number, infinite or negative: left out.
+    /// Pixels that are no number or negative: left out.
     pub bad_pixels: usize,
     /// Pixels that a mask hides.
     pub masked_pixels: usize,
@@ -42,7 +42,8 @@ impl Field {
     /// The field of an image; pixels that are 0 in `mask`, an image of the same size, are hidden.
     ///
     /// # Errors
-    /// The image has no view, or the mask has another size.
+    /// The image has no view, the mask has another size, or a pixel that the eye sees is infinite: what was too
+    /// bright for the file is the brightest source, and without it every figure would be too low.
     pub fn of(image: &LuminanceImage, mask: Option<&LuminanceImage>) -> Result<Self, Undefined> {
         let view = image.view.ok_or_else(|| {
             Undefined::because("the image does not say where its pixels look (no VIEW that can be used)")
@@ -64,6 +65,7 @@ impl Field {
         let middle = (image.height / 2) as f64 + 0.5;
         let level = (0..image.width).map(|column| of_eye([column as f64 + 0.5, middle])).collect();
         let mut field = Self { size, level, ..Self::default() };
+        let mut infinite = 0;
         for row in 0..image.height {
             for column in 0..image.width {
                 let index = row * image.width + column;
@@ -76,6 +78,7 @@ impl Field {
                     continue;
                 }
                 let luminance = image.luminance_cd_m2[index];
+                infinite += usize::from(luminance > f64::MAX);
                 if !(luminance.is_finite() && luminance >= 0.0) {
                     field.bad_pixels += 1;
                     continue;
@@ -89,6 +92,11 @@ impl Field {
                     luminance,
                 });
             }
+        }
+        if infinite > 0 {
+            return Err(Undefined::because(format!(
+                "{infinite} pixel(s) before the eye are infinite: a source was too bright for the file (half precision ends at 65504), so no figure can be computed; write it in single precision, or mask what must not count"
+            )));
         }
         Ok(field)
     }

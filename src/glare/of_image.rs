@@ -44,7 +44,7 @@ impl Default for Options {
     }
 }
 
-/// A source of the image with its position index; `None` where the model ignores it.
+/// A source of the image with its position index; `None` where UGR ignores it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageSource {
     /// What was found.
@@ -95,27 +95,21 @@ pub fn glare_of_image(
     let mut sight = Sight { given: options.given, mean: field.mean(|_| true), ..Sight::default() };
     let mut sources = Vec::with_capacity(found.sources.len());
     for detected in &found.sources {
-        let position_index =
-            match options.position.position(glam::DVec3::Z, glam::DVec3::Y, detected.direction) {
-                Position::Index(index) => Some(index),
-                Position::BelowTable(index) => {
-                    below += 1;
-                    Some(index)
-                }
-                Position::Ignored => {
-                    ignored += 1;
-                    None
-                }
-            };
-        sight.sources.extend(position_index.map(|index| detected.at(index)));
+        let position = options.position.position(glam::DVec3::Z, glam::DVec3::Y, detected.direction);
+        let (Position::Index(index) | Position::BelowTable(index) | Position::OffTable(index)) = position;
+        let off_table = matches!(position, Position::OffTable(_));
+        below += usize::from(matches!(position, Position::BelowTable(_)));
+        ignored += usize::from(off_table);
+        sight.sources.push(detected.at(index, off_table));
         sight.e_direct_lx += detected.eye_lx;
+        let position_index = if off_table { None } else { Some(index) };
         sources.push(ImageSource { detected: *detected, position_index });
     }
     if below > 0 {
         notes.push(format!("{below} source(s) below the line of sight: Iwata–Osterhaus position index"));
     }
     if ignored > 0 {
-        notes.push(format!("{ignored} source(s) outside the CIE 117 table are ignored by the indices"));
+        notes.push(format!("{ignored} source(s) outside the CIE 117 table: UGR and M leave them out, other indices take P by Levin"));
     }
     sight.e_v_lx = options.measured_e_v_lx.unwrap_or_else(|| field.illuminance_lx());
     sight.background = Nits(sight.e_indirect_lx() / std::f64::consts::PI);
@@ -138,18 +132,16 @@ pub fn glare_of_image(
 fn field_notes(field: &Field, measured_e_v_lx: Option<f64>) -> Vec<String> {
     let mut notes = Vec::new();
     if field.bad_pixels > 0 {
-        notes.push(format!(
-            "{} pixel(s) are negative, infinite or no numbers; they are left out",
-            field.bad_pixels
-        ));
+        notes.push(format!("{} pixel(s) are negative or no numbers; they are left out", field.bad_pixels));
     }
     if field.masked_pixels > 0 {
         notes.push(format!("{} pixel(s) are hidden by the mask and give no light", field.masked_pixels));
     }
-    let share = field.solid_angle_sr() / (2.0 * std::f64::consts::PI);
+    // By the cosine, as E_v has it: a picture that lacks a thin rim lacks nothing.
+    let share = field.pixels.iter().map(|pixel| pixel.projected_sr).sum::<f64>() / std::f64::consts::PI;
     if share < WHOLE && measured_e_v_lx.is_none() {
         notes.push(format!(
-            "the image shows {:.1} % of what lies before the eye: E_v and L_b are of that part only",
+            "the image shows {:.1} % of what lights the eye, by the cosine: E_v and L_b are of that part only",
             100.0 * share
         ));
     }

@@ -149,8 +149,9 @@ pub enum Position {
     Index(f64),
     /// P from below the line of sight, where the table has none: Iwata–Osterhaus, to be noted.
     BelowTable(f64),
-    /// The method ignores such a source.
-    Ignored,
+    /// Where the table has none above the line of sight, and UGR ignores a source: P of [`levin_iwata`] for
+    /// the indices that know no table.
+    OffTable(f64),
 }
 
 impl PositionModel {
@@ -171,7 +172,7 @@ impl PositionModel {
                 Err(_) if direction.dot(up - gaze * up.dot(gaze)) < 0.0 => {
                     Position::BelowTable(levin_iwata(gaze, up, direction))
                 }
-                Err(_) => Position::Ignored,
+                Err(_) => Position::OffTable(levin_iwata(gaze, up, direction)),
             },
         }
     }

@@ -159,6 +159,7 @@ mod tests {
                 luminance: Nits(luminance),
                 solid_angle_sr,
                 position_index: [1.8, 3.0][i],
+                off_table: false,
                 off_axis_deg: f64::acos(cos[i]).to_degrees(),
                 eye_lx: luminance * solid_angle_sr * cos[i],
                 extent: None,

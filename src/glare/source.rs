@@ -6,6 +6,15 @@ use crate::units::{Nits, Undefined};
 /// The reason why there is no index where nothing shines: no glare, unlike every other reason.
 pub const NO_SOURCE: &str = "no light source is visible";
 
+/// The same where UGR ignores all that shines.
+pub const ALL_OFF_TABLE: &str =
+    "all visible sources lie where the CIE 117 table has no position index, so UGR counts none";
+
+/// Whether an index has no value only because nothing glares.
+pub fn nothing_glares(undefined: &Undefined) -> bool {
+    [NO_SOURCE, ALL_OFF_TABLE].contains(&undefined.reason.as_str())
+}
+
 /// A source as one eye sees it; what is hidden from the eye is not part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlareSource {
@@ -15,6 +24,9 @@ pub struct GlareSource {
     pub solid_angle_sr: f64,
     /// Position index P, 1 on the line of sight.
     pub position_index: f64,
+    /// Whether it lies where the table of CIE 117 has no P, so that UGR and its kin leave it out. Other indices
+    /// were made with a formula for P and count it.
+    pub off_table: bool,
     /// Angle between the line of sight and the source, θ, degrees.
     pub off_axis_deg: f64,
     /// Illuminance that it gives on the plane of the eye, L ω cos θ, lx.

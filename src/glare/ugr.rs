@@ -1,7 +1,7 @@
 //! Unified glare rating. The background luminance belongs to the *indirect vertical* illuminance at
 //! the eye (L_b = E_i/π): with the sources' own light in it the index comes out low.
 
-use super::source::{GlareSource, positioned_sum, positive, square};
+use super::source::{ALL_OFF_TABLE, GlareSource, NO_SOURCE, positioned_sum, positive, square};
 use crate::units::{Nits, Undefined};
 
 /// Below this projected area (m²) UGR weights the intensity instead of the luminance, CIE 147.
@@ -14,7 +14,8 @@ pub const LARGE_SOURCE_M2: f64 = 1.5;
 pub const VALID_SOLID_ANGLE_SR: [f64; 2] = [3e-4, 0.1];
 
 /// UGR = 8 lg(0.25/L_b · Σ L²ω/P²), CIE 117:1995; L²ω is replaced by 200 I²/r² for sources with
-/// less than 0.005 m² of projected area, CIE 147. Initial flux, no maintenance factor.
+/// less than 0.005 m² of projected area, CIE 147. Initial flux, no maintenance factor. Sources off the table
+/// of position indices are left out, as the method has it.
 ///
 /// # Errors
 /// No source shines, the background is not positive, or a source is no physical one.
@@ -42,7 +43,11 @@ fn index(
     background: Nits,
     term: impl Fn(&GlareSource) -> Result<f64, Undefined>,
 ) -> Result<f64, Undefined> {
-    let sum = positioned_sum(sources, 2, term)?;
+    let counts = |source: &GlareSource| if source.off_table { Ok(0.0) } else { term(source) };
+    let sum = positioned_sum(sources, 2, counts).map_err(|undefined| {
+        let ignored = sources.iter().any(|source| source.off_table && source.eye_lx > 0.0);
+        if ignored && undefined.reason == NO_SOURCE { Undefined::because(ALL_OFF_TABLE) } else { undefined }
+    })?;
     let background = positive(background.0, "the background luminance is not positive")?;
     Ok(8.0 * (0.25 / background * sum).log10())
 }
@@ -54,7 +59,8 @@ pub fn validity(sources: &[GlareSource]) -> Vec<String> {
     let of_ordinary_size =
         |source: &&GlareSource| area_m2(source).is_none_or(|area_m2| area_m2 >= SMALL_SOURCE_M2);
     let count = |is: &dyn Fn(&GlareSource) -> bool| {
-        sources.iter().filter(of_ordinary_size).filter(|source| is(source)).count()
+        let counted = sources.iter().filter(|source| !source.off_table).filter(of_ordinary_size);
+        counted.filter(|source| is(source)).count()
     };
     [
         (
@@ -88,6 +94,7 @@ mod tests {
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
+            off_table: false,
             off_axis_deg: 20.0,
             eye_lx: luminance * solid_angle_sr * 0.94,
             extent: Some(Extent {

@@ -253,3 +253,23 @@ fn the_least_number_of_points_is_that_of_published_tables() {
         assert!((least..=least + 2).contains(&grid.columns), "{side} m: {} and {least}", grid.columns);
     }
 }
+
+/// Catches: an L-shaped corridor taken for the hall round it, a strip for the task inside, a rectangle that is
+/// turned.
+#[test]
+fn the_width_of_an_area_is_that_of_the_largest_circle_in_it() {
+    let of = |corners: &[(f64, f64)], holes: &[Vec<DVec2>]| {
+        width(&corners.iter().copied().map(DVec2::from).collect::<Vec<_>>(), holes)
+    };
+    assert!((of(&[(0.0, 0.0), (8.0, 0.0), (8.0, 5.0), (0.0, 5.0)], &[]) - 5.0).abs() < 1e-12);
+    assert!((of(&[(0.0, 0.0), (6.0, 8.0), (2.0, 11.0), (-4.0, 3.0)], &[]) - 5.0).abs() < 1e-9);
+    let l = [(0.0, 0.0), (20.0, 0.0), (20.0, 1.8), (1.8, 1.8), (1.8, 20.0), (0.0, 20.0)];
+    // In the corner a circle may be larger: it touches two walls and the inner corner.
+    let corner = 2.0 * 1.8 * 2f64.sqrt() / (1.0 + 2f64.sqrt());
+    let found = of(&l, &[]);
+    assert!(found <= corner && found > 0.97 * corner, "{found}, not {corner}");
+    let task = [(0.5, 0.5), (10.5, 0.5), (10.5, 10.5), (0.5, 10.5)].map(DVec2::from).to_vec();
+    let strip = of(&[(0.0, 0.0), (11.0, 0.0), (11.0, 11.0), (0.0, 11.0)], &[task]);
+    assert!((0.49..0.6).contains(&strip), "{strip}");
+    assert!(of(&l, &[l.map(DVec2::from).to_vec()]) < 1e-9, "nothing is left");
+}

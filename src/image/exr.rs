@@ -118,10 +118,7 @@ fn decode(bytes: &[u8]) -> Result<LuminanceImage, ImageError> {
             header.layer_size.0, header.layer_size.1, shift[0], shift[1]
         ));
     }
-    without_non_numbers(&mut luminance, width, &mut notes);
-    if let Some(values) = &mut standard_error {
-        without_non_numbers(values, width, &mut notes);
-    }
+    count_non_numbers(&luminance, width, &mut notes);
     let name = Text::from(VIEW);
     let attributes = [&header.own_attributes.other, &header.shared_attributes.other];
     let mut view = None;
@@ -221,23 +218,22 @@ fn samples(bytes: &[u8], kind: SampleType) -> impl Iterator<Item = f64> + '_ {
     })
 }
 
-/// Sets NaN and infinities to 0 and says how many there were and where the first one.
-fn without_non_numbers(values: &mut [f64], width: usize, notes: &mut Vec<String>) {
+/// Says how many NaN and infinities there are and where the first one: what they mean is not decided here.
+fn count_non_numbers(values: &[f64], width: usize, notes: &mut Vec<String>) {
     let (mut count, mut first, mut negative) = (0usize, 0, 0usize);
-    for (index, value) in values.iter_mut().enumerate() {
+    for (index, value) in values.iter().enumerate() {
         negative += usize::from(*value < 0.0 && value.is_finite());
         if !value.is_finite() {
             if count == 0 {
                 first = index;
             }
             count += 1;
-            *value = 0.0;
         }
     }
     if count > 0 {
         let (column, row) = (first % width, first / width);
         notes.push(format!(
-            "{count} pixels are no finite number and taken as 0, the first one in column {column} of row {row}"
+            "{count} pixels are no finite number, the first one in column {column} of row {row}"
         ));
     }
     if negative > 0 {
@@ -335,7 +331,7 @@ mod tests {
         image.luminance_cd_m2[30] = f64::INFINITY;
         image.luminance_cd_m2[31] = -1.0;
         let back = read(&write(&image).expect("encoded")).expect("own bytes");
-        assert!(back.luminance_cd_m2.iter().all(|value| value.is_finite()));
+        assert!(back.luminance_cd_m2[20].is_nan() && back.luminance_cd_m2[30] > 1e300);
         let notes = back.notes.join("; ");
         assert!(
             notes.contains("2 pixels are no finite number") && notes.contains("column 2 of row 2"),

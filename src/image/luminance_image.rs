@@ -1,5 +1,7 @@
 //! An image in cd/m², and what an eye at its centre of projection receives.
 
+use rayon::prelude::*;
+
 use super::View;
 
 /// Luminances seen through a view.
@@ -31,17 +33,37 @@ impl LuminanceImage {
         [self.width, self.height]
     }
 
+    /// Mean luminance in cd/m² of what the projection shows, Σ L ω / Σ ω over the pixels whose centres lie in it;
+    /// of all pixels alike without a view.
+    pub fn mean_cd_m2(&self) -> f64 {
+        let (mut light, mut seen_sr) = (0.0, 0.0);
+        for (index, luminance) in self.luminance_cd_m2.iter().enumerate() {
+            let pixel = [index % self.width, index / self.width];
+            let centre = pixel.map(|place| place as f64 + 0.5);
+            let solid_angle_sr = match self.view {
+                None => 1.0,
+                Some(view) if view.direction(self.size(), centre).is_some() => {
+                    view.solid_angles_sr(self.size(), pixel)[0]
+                }
+                Some(_) => 0.0,
+            };
+            light += luminance * solid_angle_sr;
+            seen_sr += solid_angle_sr;
+        }
+        if seen_sr > 0.0 { light / seen_sr } else { 0.0 }
+    }
+
     /// Illuminance in lx on the plane of the eye, E_v = Σ L ω cos θ over what lies in front of it;
     /// `None` without a view. It is the whole E_v only if the view sees the whole half-space.
     pub fn illuminance_lx(&self) -> Option<f64> {
-        let view = self.view?;
-        let mut total = 0.0;
-        for row in 0..self.height {
-            for column in 0..self.width {
-                let [_, projected] = view.solid_angles_sr(self.size(), [column, row]);
-                total += self.luminance_cd_m2[row * self.width + column] * projected;
-            }
-        }
-        Some(total)
+        let raster = self.view?.raster(self.size());
+        let of_row = |row: usize| {
+            let line = &self.luminance_cd_m2[row * self.width..(row + 1) * self.width];
+            let seen =
+                |(column, luminance): (usize, &f64)| luminance * raster.solid_angles_sr([column, row])[1];
+            line.iter().enumerate().map(seen).sum::<f64>()
+        };
+        let rows: Vec<f64> = (0..self.height).into_par_iter().map(of_row).collect();
+        Some(rows.iter().sum())
     }
 }

@@ -15,6 +15,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::ImageError;
+use super::raster::Raster;
 
 /// How directions become places, with the full angles from edge to edge of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,11 +169,9 @@ impl View {
         self.right
     }
 
-    /// Unit direction of the place `at` (columns from the left edge, rows from the upper one; the
-    /// centre of the first pixel is at 0.5, 0.5) in an image of `size`; `None` outside the projection.
+    /// [`Raster::direction`] in an image of `size`.
     pub fn direction(&self, size: [usize; 2], at: [f64; 2]) -> Option<DVec3> {
-        let (radial, cos) = self.radial(self.on_plane(size, at))?;
-        Some(self.right * radial[0] + self.up * radial[1] + self.direction * cos)
+        self.raster(size).direction(at)
     }
 
     /// Place at which a direction appears; `None` outside the projection. Places beyond `size` are
@@ -198,87 +197,27 @@ impl View {
         Some([u * size[0] as f64, (1.0 - v) * size[1] as f64])
     }
 
-    /// Solid angle of a pixel in sr, and the same weighted with cos θ (its share of the illuminance
-    /// of the eye; 0 behind it). Both are 0 outside the projection.
-    ///
-    /// ω = ∫ dω/dA dA over the pixel, by the midpoint where the Jacobian is smooth and by 16 × 16
-    /// points where the edge of a fisheye cuts the pixel.
+    /// [`Raster::solid_angles_sr`] in an image of `size`.
     pub fn solid_angles_sr(&self, size: [usize; 2], pixel: [usize; 2]) -> [f64; 2] {
-        let corner = pixel.map(|index| index as f64);
-        let half = self.projection.half_extents();
-        let area = 4.0 * half[0] * half[1] / (size[0] as f64 * size[1] as f64);
-        let parts = if self.is_cut(size, corner) { 16 } else { 1 };
-        let step = 1.0 / f64::from(parts);
-        let mut sums = [0.0; 2];
-        for row in 0..parts {
-            for column in 0..parts {
-                let at =
-                    [corner[0] + (f64::from(column) + 0.5) * step, corner[1] + (f64::from(row) + 0.5) * step];
-                let Some((radial, cos)) = self.radial(self.on_plane(size, at)) else { continue };
-                // dω/dA and cos θ dω/dA; the latter is finite where the former is not.
-                let (plain, projected) = match self.projection {
-                    Projection::Perspective { .. } => (cos.powi(3), cos.powi(4)),
-                    Projection::AngularFisheye { .. } => {
-                        let sin = radial[0].hypot(radial[1]);
-                        let theta = sin.atan2(cos);
-                        let jacobian = if theta > 1e-6 { sin / theta } else { 1.0 };
-                        (jacobian, jacobian * cos.max(0.0))
-                    }
-                    Projection::HemisphericalFisheye { .. } => (1.0 / cos.max(1e-6), 1.0),
-                };
-                sums[0] += plain;
-                sums[1] += projected;
-            }
-        }
-        sums.map(|sum| sum * area * step * step)
+        self.raster(size).solid_angles_sr(pixel)
     }
 
-    /// Place on the image plane.
-    fn on_plane(&self, size: [usize; 2], at: [f64; 2]) -> [f64; 2] {
-        let half = self.projection.half_extents();
-        let x = at[0] / size[0] as f64 - 0.5 + self.shift[0];
-        let y = 0.5 - at[1] / size[1] as f64 + self.shift[1];
-        [2.0 * x * half[0], 2.0 * y * half[1]]
-    }
-
-    /// Sine-weighted components to the right and up, and the cosine, of a place on the image plane.
-    fn radial(&self, [x, y]: [f64; 2]) -> Option<([f64; 2], f64)> {
-        let radius = x.hypot(y);
-        let (sin_per_radius, cos) = match self.projection {
-            Projection::Perspective { .. } => {
-                let cos = 1.0 / (1.0 + radius * radius).sqrt();
-                (cos, cos)
-            }
-            Projection::AngularFisheye { .. } => {
-                if radius > self.projection.largest_theta() {
-                    return None;
-                }
-                let (sin, cos) = radius.sin_cos();
-                (if radius > 1e-9 { sin / radius } else { 1.0 }, cos)
-            }
-            Projection::HemisphericalFisheye { .. } => {
-                let square = 1.0 - radius * radius;
-                (square > 0.0).then(|| (1.0, square.sqrt()))?
-            }
-        };
-        Some(([x * sin_per_radius, y * sin_per_radius], cos))
-    }
-
-    /// Whether the edge of the projection lies within the pixel or near it.
-    fn is_cut(&self, size: [usize; 2], corner: [f64; 2]) -> bool {
-        let edge = match self.projection {
-            Projection::Perspective { .. } => return false,
-            Projection::AngularFisheye { .. } => self.projection.largest_theta(),
+    /// The pixels of an image of `size`.
+    pub fn raster(&self, size: [usize; 2]) -> Raster {
+        let Self { projection, shift, direction, right, up, .. } = *self;
+        let largest_radius = match projection {
+            Projection::Perspective { .. } => f64::INFINITY,
+            Projection::AngularFisheye { .. } => projection.largest_theta(),
             Projection::HemisphericalFisheye { .. } => 1.0,
         };
-        let half = self.projection.half_extents();
-        let pixel = (2.0 * half[0] / size[0] as f64).hypot(2.0 * half[1] / size[1] as f64);
-        let [x, y] = self.on_plane(size, [corner[0] + 0.5, corner[1] + 0.5]);
-        // The Jacobian of the hemispherical fisheye is steep for some pixels inwards of its edge.
-        let inwards =
-            if matches!(self.projection, Projection::HemisphericalFisheye { .. }) { 8.0 } else { 1.0 };
-        let radius = x.hypot(y);
-        radius > edge - inwards * pixel && radius < edge + pixel
+        Raster::new(
+            projection,
+            [right, up, direction],
+            projection.half_extents(),
+            shift,
+            size,
+            largest_radius,
+        )
     }
 }
 

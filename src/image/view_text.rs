@@ -1,5 +1,6 @@
 //! Views as Radiance writes them: `VIEW= -vta -vp x y z -vd x y z -vu x y z -vh 180 -vv 180`.
-//! Options of several lines cumulate; what no line says has Radiance's default.
+//! Options of several lines of a file cumulate; what no line says has Radiance's default. What a person
+//! writes is read strictly ([`asked`]): there, nothing is passed over and nothing is guessed.
 
 use std::fmt::Write;
 
@@ -33,11 +34,26 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The options of a view.
+    fn of(view: &View) -> Self {
+        let (kind, angles_deg) = letter_and_angles(view.projection);
+        Self { kind, eye: view.eye, direction: view.forward(), up: view.up(), angles_deg, shift: view.shift }
+    }
+
     /// Adds the options of `text`; unknown ones are passed over, as Radiance does.
     ///
     /// # Errors
     /// [`ImageError::View`] where a number is missing or none.
     pub fn add(&mut self, text: &str) -> Result<(), ImageError> {
+        self.take(text, |_| Ok(()))
+    }
+
+    /// Adds the options of `text`; of one that is unknown, `unknown` says what is to be done.
+    fn take(
+        &mut self,
+        text: &str,
+        unknown: impl Fn(&str) -> Result<(), ImageError>,
+    ) -> Result<(), ImageError> {
         let mut words = text.split_ascii_whitespace();
         while let Some(word) = words.next() {
             let mut number = || {
@@ -55,7 +71,9 @@ impl Options {
                 b"-vv" => self.angles_deg[1] = number()?,
                 b"-vs" => self.shift[0] = number()?,
                 b"-vl" => self.shift[1] = number()?,
-                _ => {}
+                // Where Radiance clips before and behind changes no direction.
+                b"-vo" | b"-va" => _ = number()?,
+                _ => unknown(word)?,
             }
         }
         Ok(())
@@ -90,19 +108,70 @@ impl Options {
     }
 }
 
+/// The view that a person asks for with `text`; `base`, the file's own, has what `text` leaves out.
+/// Without a base the projection and both angles must be there.
+///
+/// # Errors
+/// [`ImageError::Asked`] with a hint for words that are no option, numbers that are missing, and a view
+/// that is not said; [`ImageError::View`] for projections that are not supported, and impossible ones.
+pub fn asked(text: &str, base: Option<&View>) -> Result<View, ImageError> {
+    let wrong = |message: String, hint: &str| ImageError::Asked { message, hint: hint.into() };
+    let words: Vec<&str> = text.split_ascii_whitespace().collect();
+    if words.is_empty() {
+        return Err(wrong("no option of a view is given".into(), EXAMPLE));
+    }
+    let mut options = base.map_or_else(Options::default, Options::of);
+    options
+        .take(text, |word| {
+            let joined = ["-vp", "-vd", "-vu", "-vh", "-vv", "-vs", "-vl", "-vo", "-va"]
+                .into_iter()
+                .find(|option| word.len() > 3 && word.starts_with(option));
+            Err(match joined {
+                Some(option) => {
+                    let hint = format!("a space stands before a number: {option} {}", &word[3..]);
+                    wrong(format!("\"{word}\" is no option of a view"), &hint)
+                }
+                None if word == "-vf" => {
+                    wrong("-vf names a file, which is not read".into(), "write the file's options themselves")
+                }
+                None => wrong(format!("\"{word}\" is no option of a view"), EXAMPLE),
+            })
+        })
+        .map_err(|error| match error {
+            ImageError::View(message) => ImageError::Asked { message, hint: EXAMPLE.into() },
+            other => other,
+        })?;
+    if base.is_none() {
+        let given = |option: &str| words.iter().any(|word| word.starts_with(option));
+        let missing: Vec<&str> = ["-vt", "-vh", "-vv"].into_iter().filter(|option| !given(option)).collect();
+        if !missing.is_empty() {
+            let message = format!("the file has no view of its own, and {} is missing", missing.join(", "));
+            return Err(wrong(message, EXAMPLE));
+        }
+    }
+    options.view()
+}
+
+/// What a whole view looks like.
+const EXAMPLE: &str =
+    "a view says its projection and its angles in degrees, for example \"-vta -vh 180 -vv 180\"";
+
+/// Radiance's letter of a projection, and its angles in degrees, across and upright.
+fn letter_and_angles(projection: Projection) -> (u8, [f64; 2]) {
+    match projection {
+        Projection::Perspective { horizontal_deg, vertical_deg } => (b'v', [horizontal_deg, vertical_deg]),
+        Projection::AngularFisheye { horizontal_deg, vertical_deg } => (b'a', [horizontal_deg, vertical_deg]),
+        Projection::HemisphericalFisheye { horizontal_deg, vertical_deg } => {
+            (b'h', [horizontal_deg, vertical_deg])
+        }
+    }
+}
+
 impl View {
     /// The view as Radiance's options.
     pub fn to_options(&self) -> String {
-        let (kind, [horizontal, vertical]) = match self.projection {
-            Projection::Perspective { horizontal_deg, vertical_deg } => ('v', [horizontal_deg, vertical_deg]),
-            Projection::AngularFisheye { horizontal_deg, vertical_deg } => {
-                ('a', [horizontal_deg, vertical_deg])
-            }
-            Projection::HemisphericalFisheye { horizontal_deg, vertical_deg } => {
-                ('h', [horizontal_deg, vertical_deg])
-            }
-        };
-        let mut text = format!("-vt{kind}");
+        let (kind, [horizontal, vertical]) = letter_and_angles(self.projection);
+        let mut text = format!("-vt{}", char::from(kind));
         for (option, v) in [("-vp", self.eye), ("-vd", self.forward()), ("-vu", self.up())] {
             let _ = write!(text, " {option} {} {} {}", plain(v.x), plain(v.y), plain(v.z));
         }
@@ -158,5 +227,41 @@ mod tests {
         assert!(read(&["-vh nan"]).is_err());
         assert!(read(&["-vth -vh 190"]).is_err());
         assert!(read(&["-vd 0 0 1"]).is_err());
+    }
+
+    /// Catches: rubbish, a missing space or number, or a file's name taken for Radiance's 45° × 45° in silence;
+    /// a part of a view that forgets the projection of the file; a whole that is guessed.
+    #[test]
+    fn what_a_person_asks_for_is_read_strictly() {
+        let fisheye = Projection::AngularFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
+        let base = View::new(fisheye, DVec3::new(1.0, 2.0, 1.2), DVec3::X, DVec3::Z).expect("a view");
+        for text in [
+            "rubbish",
+            "",
+            "  ",
+            "angular 180",
+            "-vf x.vf",
+            "-vta -vh180 -vv180",
+            "-vta -vh 180 -vv",
+            "-vta -vh 180 -vv 1b0",
+            "-vtaa -vh 180 -vv 180",
+            "-vt -vh 180 -vv 180",
+            "-vta -vh 180 180",
+        ] {
+            for base in [None, Some(&base)] {
+                let error = asked(text, base).expect_err(text).to_string();
+                assert!(error.contains("\n  hint: "), "{text}: {error}");
+            }
+        }
+        for (text, missing) in [("-vta -vv 180", "-vh"), ("-vh 170 -vv 170", "-vt"), ("-vta", "-vh, -vv")] {
+            let error = asked(text, None).expect_err(text).to_string();
+            assert!(error.contains(&format!("and {missing} is missing")), "{error}");
+        }
+        let part = asked("-vh 170 -vv 170", Some(&base)).expect("a part");
+        let narrower = Projection::AngularFisheye { horizontal_deg: 170.0, vertical_deg: 170.0 };
+        assert_eq!((part.projection, part.eye, part.forward()), (narrower, base.eye, DVec3::X));
+        let whole = asked("-vta -vv 180 -vh 180 -vo 0 -va 0", None).expect("a view");
+        assert_eq!((whole.projection, whole.forward()), (fisheye, DVec3::Y));
+        assert!(asked("-vtc -vh 180 -vv 180", None).is_err());
     }
 }

@@ -109,6 +109,15 @@ pub fn photometry(field: &FarField, chosen: &Chosen, description: &str) -> Optio
     })
 }
 
+/// Area of the far field's opening and the sum of the openings in it, m², where the first is more than a tenth
+/// larger: then luminances from the file are too low.
+pub fn spread(photometry: &Photometry, chosen: &Chosen) -> Option<(f64, f64)> {
+    let luminaires = &chosen.world.scene.luminaires;
+    let areas = chosen.luminaires.iter().map(|(index, _)| luminaires[*index].kind.opening.area_m2());
+    let (apparent_m2, luminous_m2) = (photometry.opening.area_m2(), areas.sum::<f64>());
+    (apparent_m2 > 1.1 * luminous_m2).then_some((apparent_m2, luminous_m2))
+}
+
 /// The rectangle around points on plan.
 fn around(points: impl Iterator<Item = DVec3>) -> Opening {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);

@@ -148,7 +148,7 @@ pub const RULES: &[Rule] = &[
     ),
     warning(
         "missing-range",
-        "The angles end neither at 90° nor at 180°.",
+        "The angles end where light may go on.",
         "Directions beyond the last angle are taken as dark. If the luminaire shines there, flux, wall and ceiling \
          illuminance are too low.",
     ),
@@ -206,6 +206,13 @@ pub const RULES: &[Rule] = &[
         "The flux does not fit the power.",
         "Luminaires give between 5 and 250 lm/W. Beyond that either is wrong: flux per 1000 lm left unscaled, power \
          of one module for a whole luminaire, or watts and lumens exchanged.",
+    ),
+    warning(
+        "implausible-size",
+        "The luminous area is larger than 10 m².",
+        "LM-63 counts sizes in metres or feet, EULUMDAT in millimetres. Millimetres that are declared as metres make \
+         an opening of kilometres: its light is spread so thin that almost none of it falls on the room. Set `area` \
+         in the project, or correct the file.",
     ),
     warning(
         "implausible-luminance",

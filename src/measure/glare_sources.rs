@@ -83,6 +83,9 @@ pub struct Sources {
 /// weighted by the cosine: the factor that is usual for sources found in images.
 pub const HIGHLIGHT: f64 = 5.0;
 
+/// What is said of sources that UGR ignores.
+const OFF_TABLE: &str = "a source, or a part of one, lies where the CIE 117 table has no position index: UGR leaves it out, other indices take P by Levin";
+
 /// Degrees of freedom of the visibility of a luminous surface: those of one of its pieces, though several may
 /// be hidden in part.
 const PIECE_DEGREES: usize = 15;
@@ -158,18 +161,23 @@ impl Frame {
         Self { gaze, up: if gaze.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z }, model }
     }
 
-    /// P, or `None` where the model ignores a source.
-    fn position(&self, direction: DVec3, notes: &mut Vec<String>) -> Option<f64> {
-        match self.model.position(self.gaze, self.up, direction) {
-            Position::Index(index) => Some(index),
-            Position::BelowTable(index) => {
-                let note = "a source lies below the line of sight: Iwata–Osterhaus position index";
-                if !notes.iter().any(|known| known == note) {
-                    notes.push(note.into());
-                }
-                Some(index)
+    /// P, and whether UGR ignores what is there.
+    fn position(&self, direction: DVec3, notes: &mut Vec<String>) -> (f64, bool) {
+        let mut note = |text: &str| {
+            if !notes.iter().any(|known| known == text) {
+                notes.push(text.into());
             }
-            Position::Ignored => None,
+        };
+        match self.model.position(self.gaze, self.up, direction) {
+            Position::Index(index) => (index, false),
+            Position::BelowTable(index) => {
+                note("a source lies below the line of sight: Iwata–Osterhaus position index");
+                (index, false)
+            }
+            Position::OffTable(index) => {
+                note(OFF_TABLE);
+                (index, true)
+            }
         }
     }
 }
@@ -185,7 +193,7 @@ fn luminaire(
     let cos = one.direction.dot(frame.gaze);
     let area_sr = one.solid_angle_sr.value;
     let is_point = !(area_sr > 0.0);
-    let (luminance, solid_angle_sr, position_index) = match convention.sources {
+    let (luminance, solid_angle_sr, (position_index, off_table)) = match convention.sources {
         SourceModel::Subdivided if !is_point => {
             let pieces = one.pieces.iter().map(|piece| {
                 (piece.direction, piece.visible_sr, weight * piece.normal_lx / piece.visible_sr)
@@ -195,11 +203,11 @@ fn luminaire(
         SourceModel::Centre if !is_point => {
             let far = weight * one.centre_lx * one.distance_m * one.distance_m / one.projected_area_m2;
             let size_sr = one.projected_area_m2 / (one.distance_m * one.distance_m) * one.visible_fraction;
-            (far, size_sr, frame.position(one.direction, notes)?)
+            (far, size_sr, frame.position(one.direction, notes))
         }
         SourceModel::Centre | SourceModel::Visible | SourceModel::Subdivided => {
             let luminance = weight * one.luminance_cd_m2().unwrap_or(0.0);
-            (luminance, area_sr, frame.position(one.direction, notes)?)
+            (luminance, area_sr, frame.position(one.direction, notes))
         }
     };
     let relative = |estimate: Estimate| if estimate.value > 0.0 { estimate.se / estimate.value } else { 0.0 };
@@ -209,6 +217,7 @@ fn luminaire(
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
+            off_table,
             off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
             eye_lx: weight * one.normal_lx.value * cos,
             extent: Some(Extent {
@@ -230,28 +239,30 @@ fn luminaire(
     })
 }
 
-/// Pieces (direction, sr, cd/m²) as one source with the same Σ L²ω/P²: luminance, solid angle, P.
+/// Pieces (direction, sr, cd/m²) as one source with the same Σ L²ω/P²: luminance, solid angle, P and whether
+/// UGR ignores it.
 ///
-/// 1/P² is the mean over the solid angle, L² the mean weighted by ω/P². A piece that the model ignores
-/// adds to the solid angle and not to the sum.
+/// 1/P² is the mean over the solid angle, L² the mean weighted by ω/P². A piece that UGR ignores adds to the
+/// solid angle and not to the sum, unless it ignores them all.
 fn merged(
     pieces: impl Iterator<Item = (DVec3, f64, f64)>,
     frame: &Frame,
     notes: &mut Vec<String>,
-) -> Option<(f64, f64, f64)> {
-    let (mut size_sr, mut weighted_sr, mut squares) = (0.0, 0.0, 0.0);
+) -> Option<(f64, f64, (f64, bool))> {
+    let (mut size_sr, mut weighted_sr, mut squares) = (0.0, [0.0; 2], [0.0; 2]);
     for (direction, piece_sr, luminance) in pieces {
         if !(direction.dot(frame.gaze) > 0.0 && piece_sr > 0.0) {
             continue;
         }
         size_sr += piece_sr;
-        if let Some(index) = frame.position(direction, notes) {
-            weighted_sr += piece_sr / (index * index);
-            squares += luminance * luminance * piece_sr / (index * index);
-        }
+        let (index, off_table) = frame.position(direction, notes);
+        weighted_sr[usize::from(off_table)] += piece_sr / (index * index);
+        squares[usize::from(off_table)] += luminance * luminance * piece_sr / (index * index);
     }
-    (weighted_sr > 0.0)
-        .then(|| (f64::sqrt(squares / weighted_sr), size_sr, f64::sqrt(size_sr / weighted_sr).max(1.0)))
+    let off_table = !(weighted_sr[0] > 0.0);
+    let (weighted_sr, squares) = (weighted_sr[usize::from(off_table)], squares[usize::from(off_table)]);
+    let index = f64::sqrt(size_sr / weighted_sr).max(1.0);
+    (weighted_sr > 0.0).then(|| (f64::sqrt(squares / weighted_sr), size_sr, (index, off_table)))
 }
 
 /// Illuminance on the plane of the eye straight from a luminous surface, with its standard error, lx.
@@ -276,12 +287,13 @@ fn luminous_surface(
     let ahead = || surface.pieces.iter().filter(|piece| piece.direction.dot(frame.gaze) > 0.0);
     let pieces = ahead()
         .map(|piece| (piece.direction, piece.visible_sr, luminance * piece.passed_sr / piece.visible_sr));
-    let (mean, solid_angle_sr, position_index) = merged(pieces, frame, notes)?;
+    let (mean, solid_angle_sr, (position_index, off_table)) = merged(pieces, frame, notes)?;
     let passed_sr: f64 = ahead().map(|piece| piece.passed_sr).sum();
     // Relative error of Σ ω/P², by which the pieces count.
     let (mut weighted_sr, mut variance) = (0.0, 0.0);
     for piece in ahead() {
-        if let Some(index) = frame.position(piece.direction, notes) {
+        let (index, ignored) = frame.position(piece.direction, notes);
+        if ignored == off_table {
             weighted_sr += piece.passed_sr / (index * index);
             variance += (piece.se_sr / (index * index)).powi(2);
         }
@@ -295,6 +307,7 @@ fn luminous_surface(
             luminance: Nits(mean),
             solid_angle_sr,
             position_index,
+            off_table,
             off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
             eye_lx,
             extent: Some(Extent {
@@ -337,7 +350,7 @@ fn highlight(
     let pieces = bright().flatten();
     let pieces = pieces
         .map(|piece| (piece.direction, piece.solid_angle_sr / count, weight * piece.square.max(0.0).sqrt()));
-    let (luminance, solid_angle_sr, position_index) = merged(pieces, frame, notes)?;
+    let (luminance, solid_angle_sr, (position_index, off_table)) = merged(pieces, frame, notes)?;
     let light = |piece: &GlintPiece| weight * piece.luminance_cd_m2 * piece.solid_angle_sr;
     let sums = |of: &dyn Fn(&GlintPiece) -> f64| -> Estimate {
         Estimate::from_blocks(&bright().map(|pieces| pieces.map(of).sum()).collect::<Vec<f64>>())
@@ -353,6 +366,7 @@ fn highlight(
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
+            off_table,
             off_axis_deg: direction.dot(frame.gaze).clamp(-1.0, 1.0).acos().to_degrees(),
             eye_lx: on_eye.value,
             extent: None,

@@ -133,6 +133,7 @@ pub fn glare(
         .counted
         .iter()
         .zip(&terms)
+        .filter(|(counted, _)| !counted.source.off_table)
         .map(|(counted, term)| GlareSourceOutcome {
             label: counted.label.clone(),
             luminance_cd_m2: counted.source.luminance.0,

@@ -74,6 +74,8 @@ pub fn card(
 ) -> Option<Card> {
     let emitters = prepared.emitters();
     let mut counted = sources(emitters, sighted, view.direction, weights, convention, view.e_v_lx).counted;
+    // What UGR leaves out is not shown among what makes it.
+    counted.retain(|source| !source.source.off_table);
     let term = |source: &GlareSource| ugr(&[*source], Nits(0.25)).unwrap_or(f64::NEG_INFINITY);
     counted.sort_by(|a, b| term(&b.source).total_cmp(&term(&a.source)));
     let up = if view.direction.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
@@ -192,15 +194,17 @@ fn moved(
                     return Some(other.source);
                 }
                 let cos = towards.normalize().dot(view.direction);
-                let position_index = match position {
-                    Position::Index(index) | Position::BelowTable(index) if cos > 0.0 => index,
-                    _ => return None,
+                let (position_index, off_table) = match position {
+                    _ if !(cos > 0.0) => return None,
+                    Position::Index(index) | Position::BelowTable(index) => (index, false),
+                    Position::OffTable(index) => (index, true),
                 };
                 let luminance = weights[source.channel] * luminance;
                 Some(GlareSource {
                     luminance: Nits(luminance),
                     solid_angle_sr,
                     position_index,
+                    off_table,
                     off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
                     eye_lx: luminance * solid_angle_sr * cos,
                     extent: Some(Extent {

@@ -8,6 +8,7 @@ use crate::estimate::Estimate;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
 use crate::outcome::{IndexOutcome, Interval};
+use crate::plan::inside_furniture;
 use crate::project::{GlareMap, Project, World};
 use crate::query::{Demand, Kernel, Receiver};
 use crate::scene::Scene;
@@ -15,7 +16,7 @@ use crate::solve::{Effort, GlanceEffort, Mended, Method, Prepared, Sheet, answer
 use crate::units::Undefined;
 
 /// Patches on large surfaces and links of each in the field of maps: finer than answers need.
-const PATCHES: f64 = 3000.0;
+const PATCHES: f64 = 4500.0;
 const LINKS: u32 = 64;
 
 /// A computed map.
@@ -91,7 +92,7 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
 }
 
 /// The usual effort of a swift map.
-pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 512, rough: 0.02, walks: 32 };
+pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 384, rough: 0.012, walks: 32 };
 
 /// All maps of a project.
 pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {
@@ -163,6 +164,9 @@ pub fn swift_eyes(
     let alpha = 1.0 - project.accuracy.confidence;
     let convention = Convention::default();
     let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
+        if let Some(shut) = shut_eye(world, map, position) {
+            return shut;
+        }
         let sighted = glimpsed_from(emitters, position, seed);
         let views = sights.iter().enumerate().map(|(direction, &gaze)| {
             let of_replicates: Vec<f64> =
@@ -241,6 +245,9 @@ pub fn unbiased_at(
         let weights = weights(world, light_scene, &world.rooms[map.room], false);
         let sights = sights(map);
         let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
+            if let Some(shut) = shut_eye(world, map, position) {
+                return shut;
+            }
             let sighted = see(emitters, position);
             let views = sights.iter().enumerate().map(|(direction, &gaze)| {
                 let row = first_rows[receiver + number] + direction;
@@ -257,6 +264,19 @@ pub fn unbiased_at(
         found.push(computed);
     }
     found
+}
+
+/// What is said of a position where nobody can be: outside of the map's room, or inside furniture.
+fn shut_eye(world: &World, map: &GlareMap, position: DVec3) -> Option<MappedEye> {
+    let reason = if !world.rooms[map.room].contains(position) {
+        "the position lies outside of the room"
+    } else if inside_furniture(&world.scene, position, DVec3::Z, false) {
+        "the position lies inside furniture"
+    } else {
+        return None;
+    };
+    let nothing = |_| (Err(Undefined::because(reason)), Vec::new());
+    Some(MappedEye { position, views: (0..map.directions).map(nothing).collect() })
 }
 
 /// Cell centres of the rectangle and the cells' edges.

@@ -7,7 +7,7 @@ use super::{Finding, Format, Opening, Photometry};
 
 /// All oddities that show in the finished distribution.
 pub(super) fn check(photometry: &Photometry) -> Vec<Finding> {
-    let checks = [flux, luminous_area, nadir, covered_range, horizon, uplight];
+    let checks = [flux, luminous_area, vast_area, nadir, covered_range, horizon, uplight];
     checks.iter().filter_map(|check| check(photometry)).collect()
 }
 
@@ -37,6 +37,21 @@ fn luminous_area(photometry: &Photometry) -> Option<Finding> {
     let consequence =
         "the luminaire counts as a point: its luminance, UGR and glare are undefined; set `area`";
     none.then(|| Finding::new("zero-area", photometry.places.opening, "no luminous area", consequence))
+}
+
+/// Luminous areas above this are sizes in a wrong unit, m².
+const VAST_M2: f64 = 10.0;
+
+/// Sizes in mm that are declared as metres make a lamp of a whole room: nothing is lit, and nothing glares.
+fn vast_area(photometry: &Photometry) -> Option<Finding> {
+    let area_m2 = photometry.opening.area_m2();
+    let message = format!("a luminous area of {area_m2:.0} m²");
+    let nits = photometry.distribution.max_intensity().0 / area_m2;
+    let consequence = format!(
+        "its luminance is {nits:.1e} cd/m²: UGR and the illuminance near by are far too low; are the sizes in the right unit?"
+    );
+    (area_m2 > VAST_M2)
+        .then(|| Finding::new("implausible-size", photometry.places.opening, message, consequence))
 }
 
 fn nadir(photometry: &Photometry) -> Option<Finding> {

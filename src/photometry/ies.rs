@@ -78,8 +78,8 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         close_circle(planes, gammas, 0.0)
             .map_err(|error| Fault::new(data_line, error.to_string(), DAMAGED))?
     } else {
-        let (distribution, finding) = resampled(head.goniometer, &gammas, &angles, &planes)?;
-        findings.push(finding);
+        let (distribution, found) = resampled(head.goniometer, &gammas, &angles, &planes)?;
+        findings.extend(found);
         distribution
     };
     let opening = opening(head.size_m()?, version, head.size_line, &mut findings);

@@ -101,7 +101,7 @@ pub(super) fn resampled(
     vertical: &[Number],
     horizontal: &[Number],
     planes: &[Plane],
-) -> Result<(IntensityDistribution, Finding), Fault> {
+) -> Result<(IntensityDistribution, Vec<Finding>), Fault> {
     check_range(vertical, 90.0)?;
     check_range(horizontal, if goniometer == Goniometer::A { 180.0 } else { 90.0 })?;
     let line = horizontal[0].line;
@@ -124,7 +124,51 @@ pub(super) fn resampled(
         100.0 * error,
         100.0 * flux_error
     );
-    Ok((distribution, Finding::new("resampled", line, message, consequence)))
+    let resampled = Finding::new("resampled", line, message, consequence);
+    let cut = cut_off(goniometer, [vertical, horizontal], planes);
+    Ok((distribution, std::iter::once(resampled).chain(cut).collect()))
+}
+
+/// Light at the edge of what was measured, as a part of the largest intensity, above which a beam is cut.
+const CUT: f64 = 0.01;
+
+/// A measured range that ends where the lamp still shines.
+fn cut_off(
+    goniometer: Goniometer,
+    [vertical, horizontal]: [&[Number]; 2],
+    planes: &[Plane],
+) -> Option<Finding> {
+    let largest = |cd: &mut dyn Iterator<Item = f64>| cd.fold(0.0, f64::max);
+    let most = largest(&mut planes.iter().flat_map(|plane| plane.cd.iter().copied()));
+    let around_deg = if goniometer == Goniometer::A { 180.0 } else { 90.0 };
+    let last_gamma = vertical.len() - 1;
+    let of_plane = |plane: &Plane| largest(&mut plane.cd.iter().copied());
+    // A range from 0 on is mirrored, and a single plane turned about: no edge is there.
+    let mut edges = Vec::new();
+    let [low, high] = [vertical[0], vertical[last_gamma]];
+    if low.value < 0.0 && low.value > -90.0 {
+        edges.push((low, "V", largest(&mut planes.iter().map(|plane| plane.cd[0]))));
+    }
+    if high.value < 90.0 {
+        edges.push((high, "V", largest(&mut planes.iter().map(|plane| plane.cd[last_gamma]))));
+    }
+    if let [first, .., last] = planes {
+        let [low, high] = [horizontal[0], horizontal[horizontal.len() - 1]];
+        if low.value < 0.0 && low.value > -around_deg {
+            edges.push((low, "H", of_plane(first)));
+        }
+        if high.value < around_deg {
+            edges.push((high, "H", of_plane(last)));
+        }
+    }
+    let (angle, name, cd) = edges.into_iter().max_by(|a, b| a.2.total_cmp(&b.2))?;
+    let message = format!("{name} ends at {}°", angle.value);
+    let consequence = format!(
+        "there the lamp still shines with {:.1} % of its largest intensity, and directions beyond are taken as dark: \
+         flux and illuminance are too low",
+        100.0 * cd / most
+    );
+    (cd > CUT * most).then(|| Finding::new("missing-range", angle.line, message, consequence))
 }
 
 fn check_range(angles: &[Number], limit_deg: f64) -> Result<(), Fault> {

@@ -31,6 +31,7 @@ pub(super) fn read(lines: &[&str]) -> Result<Photometry, Fault> {
         let message = format!("{n_plane} C planes of {n_gamma} γ angles are more than the file holds");
         return Err(Fault::new(4, message, DAMAGED));
     }
+    head.check_gaps()?;
     let opening = head.opening();
     let lamps = head.lamps()?;
 

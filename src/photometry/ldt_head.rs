@@ -9,6 +9,8 @@ const MM: f64 = 0.001;
 /// Lines before the lamp sets.
 const HEAD_LINES: usize = 26;
 const SET_LINES: usize = 6;
+/// Lines of which a part of a number would change a size, a count or the light.
+const ALONE: [usize; 17] = [3, 4, 6, 13, 14, 15, 16, 17, 18, 19, 20, 21, 23, 24, 26, 27, 29];
 
 /// The first lamp set.
 pub(super) struct Lamps {
@@ -36,6 +38,21 @@ impl Head<'_> {
     pub(super) fn optional(&self, line: usize) -> Option<f64> {
         let token = self.text(line).split_whitespace().next()?;
         parse(token, Comma::DecimalPoint)
+    }
+
+    /// Lines that hold one number hold no two: '1 200' is no 1. What decides sizes, counts and light is refused;
+    /// elsewhere words may follow a number.
+    pub(super) fn check_gaps(&self) -> Result<(), Fault> {
+        for line in ALONE {
+            let text = self.text(line);
+            let numbers = text.split_whitespace().map(|token| parse(token, Comma::DecimalPoint));
+            if numbers.take(2).flatten().count() == 2 {
+                let message = format!("'{}' is two numbers in a line that holds one", shortened(text));
+                let hint = "write it without a space, 1200 and not 1 200";
+                return Err(Fault::new(line, message, hint));
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn required(&self, line: usize, what: &str) -> Result<Number, Fault> {

@@ -192,7 +192,7 @@ fn emitted(xml: &Xml, root: Node, emitter: Node, findings: &mut Vec<Finding>) ->
         let vertical: Vec<Number> = verticals.into_iter().map(numbered).collect();
         let horizontal: Vec<Number> = planes.iter().map(|plane| numbered(plane.angle_deg)).collect();
         let (distribution, finding) = resampled(goniometer, &vertical, &horizontal, &planes)?;
-        findings.push(finding);
+        findings.extend(finding);
         distribution
     };
     if let Some(tilt) = children(emitter, "TiltAngles").next() {

@@ -1,8 +1,8 @@
 //! Areas → grids → receivers.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::hidden::exclude;
+use super::hidden::{exclude, holes};
 use super::norm_areas::norm_areas;
 use super::{Plan, PlanError, PlannedArea, PlannedQuantity, Rows};
 use crate::grid::{self, Exclusion, Grid, GridRule};
@@ -38,15 +38,17 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
     }
     let is_total =
         project.norm.as_ref().is_some_and(|norm| norm.standard.application.surrounding_of_task.is_some());
+    let mut points = 0;
     for (index, spec) in specs.iter().enumerate() {
-        let mut grid = match lay(spec, &world.rooms[spec.room], &world.scene) {
+        let holes = holes(spec, index, &specs, is_total);
+        let mut grid = match lay(spec, &world.rooms[spec.room], &world.scene, &holes) {
             Ok(grid) => grid,
             Err(error) => {
                 errors.push(PlanError::Grid { area: spec.name.clone(), error, place: spec.written.clone() });
                 continue;
             }
         };
-        exclude(&mut grid, spec, index, &specs, &world.scene, is_total);
+        exclude(&mut grid, spec, &holes, &world.scene);
         if grid.points.iter().all(|point| point.excluded.is_some()) {
             errors.push(PlanError::NoPoints { area: spec.name.clone(), place: spec.written.clone() });
             continue;
@@ -58,6 +60,12 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
                 spec.name,
                 grid.points.len()
             ));
+        }
+        points += grid.points.len();
+        if points > grid::MAX_POINTS {
+            let rooms: Vec<&str> = world.rooms.iter().map(|room| room.name.as_str()).collect();
+            errors.push(PlanError::TooManyPoints { rooms: rooms.join(", "), points });
+            return;
         }
         let wanted = quantities(project, world, spec, index, &grid);
         let quantities = ask(plan, &grid, &wanted);
@@ -83,18 +91,55 @@ fn row_of(project: &Project, world: &World, spec: &AreaSpec) -> Option<String> {
     spec.row.clone().or(task).or_else(|| world.rooms[spec.room].row.clone()).or_else(|| norm.row.clone())
 }
 
-fn lay(spec: &AreaSpec, room: &Room, scene: &Scene) -> Result<Grid, grid::GridError> {
+/// Points across a strip round another area, at least.
+const ACROSS_STRIP: f64 = 2.0;
+
+/// The rule for an area that is no rectangle. What is narrower than its outline counts by its width, as a
+/// corridor does, whatever bends it has; a strip round another area has two points across.
+fn rule_of(spec: &AreaSpec, corners: &[DVec3], normal: DVec3, holes: &[Vec<DVec2>]) -> GridRule {
+    if spec.rule != GridRule::En {
+        return spec.rule;
+    }
+    let axes = if normal.z.abs() > 0.99 { [DVec3::X, DVec3::Y] } else { [normal.cross(DVec3::Z), DVec3::Z] };
+    let flat: Vec<DVec2> =
+        corners.iter().map(|corner| DVec2::from(axes.map(|axis| axis.dot(*corner)))).collect();
+    if holes.is_empty() && grid::is_rectangle(&flat) {
+        return spec.rule;
+    }
+    let low = flat.iter().copied().reduce(DVec2::min).unwrap_or_default();
+    let size = flat.iter().copied().reduce(DVec2::max).unwrap_or_default() - low;
+    let inner = |length_m: f64| length_m - 2.0 * spec.border_m;
+    let width_m = inner(grid::width(&flat, holes));
+    let step_m = if holes.is_empty() {
+        grid::spacing_m(width_m, inner(size.max_element()))
+    } else {
+        width_m / ACROSS_STRIP
+    };
+    if step_m > 0.0 { GridRule::EnAtMost(step_m) } else { spec.rule }
+}
+
+/// The normal of an area on a room's shell that looks into the room, whichever way its edges were listed;
+/// as it is where both sides lie in the room, or none.
+fn inward(room: &Room, middle: DVec3, normal: DVec3) -> DVec3 {
+    let is_in = |side: f64| room.contains(middle + side * 2.0 * SNAP_M * normal.normalize_or_zero());
+    if is_in(-1.0) && !is_in(1.0) { -normal } else { normal }
+}
+
+fn lay(spec: &AreaSpec, room: &Room, scene: &Scene, holes: &[Vec<DVec2>]) -> Result<Grid, grid::GridError> {
     // The grid of a plane must not repeat the pattern of the luminaires above it.
     let lights: Vec<DVec3> = room.luminaires.iter().map(|&l| scene.luminaires[l].position).collect();
     let spacing = |axis: DVec3| grid::regular_spacing_m(&lights, axis.normalize_or_zero());
     match &spec.shape {
         AreaShape::Rect { origin, u, v } => {
+            let is_shell = spec.kind == AreaKind::Surface;
+            let normal = u.cross(*v);
+            let corners = [*origin, *origin + *u, *origin + *u + *v, *origin + *v];
             let grid = grid::rectangle(
                 *origin,
                 *u,
                 *v,
-                u.cross(*v),
-                spec.rule,
+                if is_shell { inward(room, *origin + 0.5 * (*u + *v), normal) } else { normal },
+                rule_of(spec, &corners, normal.normalize_or_zero(), holes),
                 spec.border_m,
                 Some([spacing(*u), spacing(*v)]),
             )?;
@@ -120,11 +165,18 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene) -> Result<Grid, grid::GridEr
         AreaShape::Polygon(corners) => {
             let normal = polygon_normal(corners);
             let top = room.floor_m + room.height_m;
-            let ceiling = spec.kind == AreaKind::Surface
-                && normal.z < -0.99
-                && corners.iter().all(|p| (p.z - top).abs() < SNAP_M);
-            let normal = if normal.z.abs() > 0.99 && !ceiling { DVec3::Z } else { normal };
-            let grid = grid::polygon(corners, normal, spec.rule, spec.border_m, &lights)?;
+            let is_shell = spec.kind == AreaKind::Surface;
+            let ceiling = is_shell && corners.iter().all(|p| (p.z - top).abs() < SNAP_M);
+            let normal = match normal.z.abs() > 0.99 {
+                true if ceiling => DVec3::NEG_Z,
+                true => DVec3::Z,
+                false if is_shell => {
+                    inward(room, corners.iter().sum::<DVec3>() / corners.len().max(1) as f64, normal)
+                }
+                false => normal,
+            };
+            let rule = rule_of(spec, corners, normal, holes);
+            let grid = grid::polygon(corners, normal, rule, spec.border_m, &lights)?;
             Ok(if spec.kind == AreaKind::Surface { snapped(grid, scene) } else { grid })
         }
         AreaShape::Points(points) => Ok(grid::list(points, DVec3::Z)),

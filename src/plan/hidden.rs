@@ -3,26 +3,21 @@
 use glam::{DVec2, DVec3};
 
 use crate::geometry::trace::Hit;
-use crate::grid::{Exclusion, Grid, inside};
+use crate::grid::{Exclusion, Grid, distance_to_outline, inside};
 use crate::project::{AreaKind, AreaShape, AreaSpec};
 use crate::scene::Scene;
 
 /// Surfaces closer than this share a plane, m.
 const TOUCHING_M: f64 = 1e-6;
 
-/// Marks points inside closed furniture, and points of surroundings and backgrounds that belong to
-/// a task or surrounding area.
+/// A point this near to the edge of another area belongs to it, m.
+const EDGE_M: f64 = 1e-6;
+
+/// Outlines in plan of the task and surrounding areas that a surrounding or background leaves out.
 ///
 /// Where a norm compares the surrounding's mean with the task's, it is the total area, task included.
-pub(super) fn exclude(
-    grid: &mut Grid,
-    spec: &AreaSpec,
-    index: usize,
-    specs: &[AreaSpec],
-    scene: &Scene,
-    is_total: bool,
-) {
-    let others: Vec<Vec<DVec2>> = specs
+pub(super) fn holes(spec: &AreaSpec, index: usize, specs: &[AreaSpec], is_total: bool) -> Vec<Vec<DVec2>> {
+    specs
         .iter()
         .enumerate()
         .filter(|&(other, area)| {
@@ -34,10 +29,15 @@ pub(super) fn exclude(
             owns && other != index && area.room == spec.room
         })
         .filter_map(|(_, area)| plan_outline(&area.shape))
-        .collect();
+        .collect()
+}
+
+/// Marks points inside closed furniture, and points in the areas that are left out.
+pub(super) fn exclude(grid: &mut Grid, spec: &AreaSpec, holes: &[Vec<DVec2>], scene: &Scene) {
+    let in_hole = |hole: &Vec<DVec2>, place| inside(hole, place) || distance_to_outline(hole, place) < EDGE_M;
     for point in grid.points.iter_mut().filter(|point| point.excluded.is_none()) {
         let flat = DVec2::new(point.position.x, point.position.y);
-        if others.iter().any(|outline| inside(outline, flat)) {
+        if holes.iter().any(|hole| in_hole(hole, flat)) {
             point.excluded = Some(Exclusion::InOtherArea);
         } else if inside_furniture(scene, point.position, point.normal, spec.kind == AreaKind::Surface) {
             point.excluded = Some(Exclusion::InsideFurniture);
@@ -60,7 +60,7 @@ fn plan_outline(shape: &AreaShape) -> Option<Vec<DVec2>> {
 /// Whether a point lies inside closed furniture: along every direction it leaves more solids than
 /// it enters. Several directions guard against open sheets; on a surface those into it are left
 /// out, so that a cabinet sunk into a wall hides the wall's points.
-pub(super) fn inside_furniture(scene: &Scene, place: DVec3, normal: DVec3, on_surface: bool) -> bool {
+pub fn inside_furniture(scene: &Scene, place: DVec3, normal: DVec3, on_surface: bool) -> bool {
     let at = place + if on_surface { normal * 1e-4 } else { DVec3::ZERO };
     [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z]
         .into_iter()

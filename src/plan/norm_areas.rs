@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::grid::GridRule;
+use crate::grid::{GridRule, width};
 use crate::norm::{Plane, Zone};
 use crate::project::{AreaKind, AreaShape, AreaSpec, Project, Room};
 use crate::scene::Scene;
@@ -32,7 +32,7 @@ pub(super) fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: u
         quantities: Vec::new(),
         written: None,
     };
-    let narrow = narrowest(&room.footprint);
+    let narrow = width(&room.footprint, &[]);
     let border_m = if narrow > 3.0 * application.border_m.value { application.border_m.value } else { 0.0 };
     let mut areas = Vec::new();
     // A vertical plane lies where the board or the rack is: nobody can make it from the outline.
@@ -95,10 +95,4 @@ pub(super) fn wall_names(scene: &Scene, room: &Room) -> Vec<String> {
         return names.into_iter().map(str::to_owned).collect();
     }
     (1..=count).map(|number| format!("wall {number}")).collect()
-}
-
-fn narrowest(footprint: &[DVec2]) -> f64 {
-    let (lo, hi) =
-        footprint.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
-    (hi - lo).min_element()
 }

@@ -190,6 +190,9 @@ fn of_norm(
             }
         }
     }
+    if rows.is_empty() && !standard.rows.is_empty() {
+        required.push(without_row(standard, room));
+    }
     for (number, row) in rows.into_iter().enumerate() {
         let is_own = own.is_none_or(|own| number == 0 && *own == row.reference);
         required.extend(whole_room(norm, world, index, room, planned, row, is_own));
@@ -243,6 +246,17 @@ fn modification(
     let level_lx = standard.modified_illuminance(row, modified.steps).ok()?;
     let norm::Bound::Min(required_lx) = row.illuminance()?.bound else { return None };
     Some((level_lx, Modified { required_lx, steps: modified.steps, reason: modified.reason.clone() }))
+}
+
+/// A room of which nobody says which row of the norm holds: nothing of the norm is judged there.
+fn without_row(standard: &Standard, room: &Room) -> PlannedRequirement {
+    let illuminance = standard.rows.iter().find_map(Row::illuminance);
+    let (quantity, statistic) = illuminance
+        .map_or((Quantity::Horizontal, Statistic::Mean), |limit| (limit.quantity, limit.statistic));
+    let reason = "no row of the norm is given: name one in the room, its areas or [norm]".into();
+    let mut one = unassessed(standard, "", quantity, statistic, reason);
+    one.subject_name.clone_from(&room.name);
+    one
 }
 
 /// What the norm limits and its file does not know.

@@ -9,7 +9,7 @@ use super::areas::{SNAP_M, on_surface};
 use super::hidden::inside_furniture;
 use super::lattice::{Plane, Tally, bounds, cells, lattice};
 use super::{PlannedArea, PlannedRoom};
-use crate::grid::{distance_to_outline, inside, spacing_m};
+use crate::grid::{distance_to_outline, inside, spacing_m, width};
 use crate::norm::{Application, Row, Zone};
 use crate::project::{AreaKind, AreaShape, Room, World};
 use crate::scene::Scene;
@@ -141,9 +141,8 @@ impl Survey<'_> {
 
     /// The strip along walls that need not be covered, m: as in grids, none where the room is narrow.
     fn border_m(&self) -> f64 {
-        let (lo, hi) = bounds(&self.room.footprint);
         let border_m = self.rules.border_m.value;
-        if (hi - lo).min_element() > 3.0 * border_m { border_m } else { 0.0 }
+        if width(&self.room.footprint, &[]) > 3.0 * border_m { border_m } else { 0.0 }
     }
 
     /// The strip round each task area, in the plane of the task.

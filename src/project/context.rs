@@ -29,6 +29,8 @@ pub struct Context {
     pub diagnostics: Vec<Diagnostic>,
     /// Places of tables with unknown keys: what seems missing there may only be misspelt.
     pub misspelt: Vec<Range<usize>>,
+    /// What is allowed and may well be a mistake.
+    pub warnings: Vec<Diagnostic>,
     /// Notes so far.
     pub biases: Vec<String>,
     /// Files read so far.
@@ -63,9 +65,28 @@ impl Context {
 
     /// Reports a mistake in a line of another file.
     pub fn error_in(&mut self, file: &str, text: &str, line: usize, message: String, hint: &str) {
-        let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-        let length = text[start..].lines().next().map_or(0, str::len);
-        self.diagnostics.push(Diagnostic::at(file, text, start..start + length, message, hint.to_owned()));
+        self.diagnostics.push(Diagnostic::at_line(file, text, line, message, hint));
+    }
+
+    /// Warns of what is allowed and may well be a mistake, at a place of the project file; it stands in the
+    /// list of biases too.
+    pub fn warn(&mut self, span: &Range<usize>, message: impl Into<String>, hint: &str) {
+        let message = message.into();
+        let warning = Diagnostic::at(&self.file, &self.text, span.clone(), message.clone(), hint.to_owned());
+        self.add_warning(warning);
+        self.note(message);
+    }
+
+    fn add_warning(&mut self, warning: Diagnostic) {
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+
+    /// Warns of a line of another file.
+    pub fn warn_in(&mut self, file: &str, text: &str, line: usize, message: String, hint: &str) {
+        self.note(message.clone());
+        self.add_warning(Diagnostic::at_line(file, text, line, message, hint));
     }
 
     /// Notes something ignored or approximated.

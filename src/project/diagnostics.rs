@@ -59,6 +59,13 @@ impl Diagnostic {
         }
     }
 
+    /// A mistake in a line of `text`, counted from 1.
+    pub fn at_line(file: &str, text: &str, line: usize, message: String, hint: &str) -> Self {
+        let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+        let length = text[start..].lines().next().map_or(0, str::len);
+        Self::at(file, text, start..start + length, message, hint.to_owned())
+    }
+
     /// A mistake of a whole file.
     pub fn file(file: &str, message: String, hint: String) -> Self {
         Self {
@@ -70,6 +77,13 @@ impl Diagnostic {
             message,
             hint,
         }
+    }
+}
+
+impl Diagnostic {
+    /// The same, told as what may well be a mistake and is allowed.
+    pub fn as_warning(&self) -> String {
+        self.to_string().replacen("error", "warning", 1)
     }
 }
 
@@ -156,6 +170,13 @@ mod tests {
             Diagnostic::at("p.toml", text, start..start + "\"über\"".len(), "no".into(), "try".into());
         let expected = "error: no\n --> p.toml:2:5\n  |\n2 | ö = \"über\" # x\n  |     ^^^^^^\n  = hint: try";
         assert_eq!(diagnostic.to_string(), expected);
+    }
+
+    /// Catches: a warning that calls itself an error, or loses its place.
+    #[test]
+    fn a_warning_is_printed_like_a_mistake() {
+        let warned = Diagnostic::at("p.toml", "a = 1\n", 0..1, "no error".into(), String::new());
+        assert_eq!(warned.as_warning(), "warning: no error\n --> p.toml:1:1\n  |\n1 | a = 1\n  | ^");
     }
 
     #[test]

@@ -64,6 +64,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Project, Vec<Diagnosti
         text,
         diagnostics: Vec::new(),
         misspelt: Vec::new(),
+        warnings: Vec::new(),
         biases: Vec::new(),
         inputs: Vec::new(),
         allow_outside: options.allow_outside,
@@ -101,6 +102,8 @@ pub struct Project {
     pub accuracy: Accuracy,
     /// What was ignored or approximated while loading.
     pub biases: Vec<String>,
+    /// What is allowed and may well be a mistake, with its place; each stands among the biases too.
+    pub warnings: Vec<Diagnostic>,
     /// Input files in order of use.
     pub inputs: Vec<InputFile>,
 }
@@ -298,6 +301,8 @@ pub struct Viewpoint {
     pub eye: DVec3,
     /// Unit lines of sight: one, or a sweep about the vertical.
     pub directions: Vec<DVec3>,
+    /// Their azimuths as they were written, else as they follow, degrees from +x towards +y.
+    pub azimuths_deg: Vec<f64>,
     /// Keys of the indices asked for, as the table of indices has them; UGR is always computed.
     pub indices: Vec<&'static str>,
     /// Light scene; `None`: the first.

@@ -44,7 +44,7 @@ fn counts(cases: &[&Requirement]) -> String {
 }
 
 fn case(requirement: &Requirement) -> String {
-    let naming = Naming { room: false, light_scene: true };
+    let naming = Naming { room: false, light_scene: true, row: false };
     let words = sentence(Lang::En, requirement, naming);
     let message = escape(&line(requirement));
     let inner = match requirement.verdict {

@@ -87,8 +87,8 @@ pub fn value_beside(lang: Lang, quantity: Quantity, statistic: Statistic, shown:
     text
 }
 
-/// A limit, without the zeros that rounding would add to UGR and R_a; a ratio of 0.025 (40 : 1) keeps its
-/// third decimal, or it would be said to be another limit.
+/// A limit, without the zeros that rounding would add to UGR and R_a, and with all the digits that it has: a ratio
+/// of 0.025 (40 : 1) or an illuminance of 100.4 lx would be said to be another limit.
 pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -> String {
     let exact = |decimals: &i32| {
         let scale = 10_f64.powi(*decimals);
@@ -100,8 +100,13 @@ pub fn limit(lang: Lang, quantity: Quantity, statistic: Statistic, limit: f64) -
     if matches!(quantity, Quantity::OfView { .. }) {
         return fixed(lang, limit, (0..=4).find(exact).unwrap_or(4) as usize);
     }
-    let whole = quantity.is_single() && limit.fract().abs() < 1e-9;
-    if whole { fixed(lang, limit, 0) } else { value(lang, quantity, statistic, limit) }
+    let usual = value(lang, quantity, statistic, limit);
+    let least = if quantity.is_single() || is_luminance(quantity, statistic) {
+        0
+    } else {
+        decimals(quantity, statistic, limit)
+    };
+    (0..=4).skip(least).find(exact).map_or(usual, |decimals| fixed(lang, limit, decimals as usize))
 }
 
 fn is_luminance(quantity: Quantity, statistic: Statistic) -> bool {
@@ -196,6 +201,28 @@ mod tests {
         assert_eq!(limit(Lang::En, Quantity::Horizontal, Statistic::Ud, 0.025), "0.025");
         assert_eq!(limit(Lang::En, Quantity::Horizontal, Statistic::U0, 0.6), "0.60");
         assert_eq!(limit(Lang::En, Quantity::Horizontal, Statistic::U0, 1.0 / 3.0), "0.33");
+    }
+
+    /// Catches: a limit of 100.4 lx printed as 100, beside a value of 100.0 that fails it.
+    #[test]
+    fn a_limit_keeps_its_digits() {
+        let text = |limit_lx| limit(Lang::En, Quantity::Horizontal, Statistic::Mean, limit_lx);
+        for (limit_lx, shown) in [
+            (100.4, "100.4"),
+            (99.75, "99.75"),
+            (500.0, "500"),
+            (5.0, "5.0"),
+            (0.5, "0.50"),
+            (0.125, "0.125"),
+        ] {
+            assert_eq!(text(limit_lx), shown);
+        }
+        assert_eq!(text(100.0 / 3.0), "33");
+        let luminance = Quantity::Luminance { azimuth_deg: 0.0, tilt_deg: 0.0 };
+        let text = |limit_nits| limit(Lang::En, luminance, Statistic::Mean, limit_nits);
+        assert_eq!([1234.5, 3000.0, 0.5].map(text), ["1\u{202f}234.5", "3\u{202f}000", "0.5"]);
+        let beside = |shown| value_beside(Lang::En, Quantity::Horizontal, Statistic::Mean, shown, 100.4);
+        assert_eq!(beside(100.0), "100.0");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::number;
 use super::page_requirements::{remarks, requirements};
 use super::page_room;
 use super::plan;
-use super::sentence::{Naming, Tally, overall_parts, sentence};
+use super::sentence::{Naming, Tally, overall_parts, room_verdict, sentence};
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::{escape, put};
 use crate::outcome::{Bias, Outcome, Requirement, RoomOutcome, Verdict};
@@ -179,14 +179,13 @@ fn room_row(outcome: &Outcome, room: &RoomOutcome, tally: Tally, lang: Lang, man
         Some(Verdict::Pass) if many => "✓",
         Some(Verdict::Fail) if many => "✗",
         Some(_) if many => "?",
-        Some(verdict) => words::verdict(lang, verdict),
-        None => word(lang, Term::NothingRequired),
+        _ => room_verdict(lang, tally),
     };
     let tightest = of_room(outcome, room)
         .filter_map(|r| r.margin.filter(|margin| margin.is_finite()).map(|margin| (margin, r)))
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let tightest = tightest.map_or("—".to_owned(), |(_, r)| {
-        let text = sentence(lang, r, Naming { room: false, light_scene: false });
+        let text = sentence(lang, r, Naming { room: false, light_scene: false, row: false });
         format!("{} {}", symbol(&text.symbol), text.margin)
     });
     vec![

@@ -215,7 +215,7 @@ fn sources(view: &ViewpointOutcome, lang: Lang) -> String {
         .map(|(number, source)| {
             let number = if view.card.is_some() { format!("{}. ", number + 1) } else { String::new() };
             vec![
-                number + &escape(&source.label),
+                number + &escape(&words::source_label(lang, &source.label)),
                 number::figures(lang, source.luminance_cd_m2, 3),
                 number::figures(lang, source.solid_angle_sr, 3),
                 number::fixed(lang, source.position_index, 2),

@@ -33,7 +33,7 @@ pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> Stri
 }
 
 fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
-    let text = sentence(lang, r, Naming { room: false, ..naming });
+    let text = sentence(lang, r, Naming { room: false, row: false, ..naming });
     let place = if r.subject == r.room {
         let scene = if naming.light_scene { format!(" · {}", r.light_scene) } else { String::new() };
         format!("{}{scene}", word(lang, Term::RoomWord))

@@ -61,7 +61,7 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
             (false, _) => Term::FluxMissing,
         };
         let factor = number::fixed(lang, dimming.factor, 2);
-        phrase(lang, term, &[&factor, &escape(&dimming.subject)])
+        phrase(lang, term, &[&factor, &escape(&words::place_name(lang, &dimming.subject))])
     });
     let by_group = room.dimming.as_ref().and_then(|dimming| dimming.groups.as_ref());
     let by_group = by_group.map_or(String::new(), |groups| {
@@ -177,7 +177,7 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
         }
         let name = format!(
             "{}<br/><span class=\"note\">{}{of}<br/>{facts}</span>",
-            escape(&area.name),
+            escape(&words::place_name(lang, &area.name)),
             words::area_kind(lang, area.kind)
         );
         for (index, field) in area.fields.iter().enumerate() {

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::canvas::{Anchor, Canvas, Lettering, Weight};
@@ -47,6 +48,8 @@ pub struct Shot {
     pub image: LuminanceImage,
     /// How it was computed.
     pub way: Way,
+    /// Σ L ω cos θ over the picture, lx; `None` without a view.
+    pub illuminance_lx: Option<f64>,
     /// What it approximates or leaves out.
     pub biases: Vec<String>,
 }
@@ -89,6 +92,7 @@ struct ShotRow<'a> {
     view: Option<String>,
     /// Σ L ω cos θ over the picture, lx; the whole E_v where it sees the whole half-space.
     illuminance_lx: Option<f64>,
+    /// Σ L ω / Σ ω over what the projection shows.
     mean_cd_m2: f64,
     max_cd_m2: f64,
     median_relative_error: Option<f64>,
@@ -117,9 +121,8 @@ impl Shot {
     fn inside(&self) -> Vec<bool> {
         let [width, height] = self.image.size();
         let centre = |index: usize| [(index % width) as f64 + 0.5, (index / width) as f64 + 0.5];
-        let seen = |index: usize| {
-            self.image.view.is_none_or(|view| view.direction([width, height], centre(index)).is_some())
-        };
+        let raster = self.image.view.map(|view| view.raster([width, height]));
+        let seen = |index: usize| raster.is_none_or(|raster| raster.shows(centre(index)));
         (0..width * height).map(seen).collect()
     }
 
@@ -175,8 +178,7 @@ pub fn files(album: &Album, formats: &[Format], lang: Lang) -> Result<Vec<(Strin
     let mut rows = Vec::new();
     for shot in &album.shots {
         let stem = free_name(&shot.name, &files);
-        let mut names = Vec::new();
-        for format in formats {
+        let encode = |format: &Format| -> Result<(String, Vec<u8>), ReportError> {
             let (extension, bytes) = match format {
                 Format::Exr => (
                     "exr",
@@ -186,9 +188,11 @@ pub fn files(album: &Album, formats: &[Format], lang: Lang) -> Result<Vec<(Strin
                 Format::Svg => ("svg", svg(shot, lang)?.into_bytes()),
                 Format::Png => ("png", false_colours(shot)?),
             };
-            names.push(format!("{stem}.{extension}"));
-            files.push((format!("{stem}.{extension}"), bytes));
-        }
+            Ok((format!("{stem}.{extension}"), bytes))
+        };
+        let encoded: Vec<(String, Vec<u8>)> = formats.par_iter().map(encode).collect::<Result<_, _>>()?;
+        let names = encoded.iter().map(|(name, _)| name.clone()).collect();
+        files.extend(encoded);
         let luminances = &shot.image.luminance_cd_m2;
         rows.push(ShotRow {
             camera: &shot.name,
@@ -200,8 +204,8 @@ pub fn files(album: &Album, formats: &[Format], lang: Lang) -> Result<Vec<(Strin
             biases: &shot.biases,
             size: shot.image.size(),
             view: shot.image.view.map(|view| view.to_options()),
-            illuminance_lx: shot.image.illuminance_lx(),
-            mean_cd_m2: luminances.iter().sum::<f64>() / luminances.len() as f64,
+            illuminance_lx: shot.illuminance_lx,
+            mean_cd_m2: shot.image.mean_cd_m2(),
             max_cd_m2: luminances.iter().copied().fold(0.0, f64::max),
             median_relative_error: shot.median_relative_error(),
             files: names,
@@ -316,6 +320,7 @@ mod tests {
         let mut image = LuminanceImage::new(40, 40, Some(view), luminance);
         image.standard_error_cd_m2 = blocks.then(|| vec![1.0; 1600]);
         let shot = Shot {
+            illuminance_lx: image.illuminance_lx(),
             name: "Место <1>".into(),
             light_scene: "work".into(),
             image,
@@ -369,5 +374,25 @@ mod tests {
         let json: serde_json::Value = serde_json::from_slice(json).expect("JSON");
         assert_eq!(json["pictures"][0]["blocks"], 64);
         assert_ne!(json["pictures"][0]["interval"], "no interval");
+    }
+
+    /// Catches: a mean that counts the black corners of a fisheye, or its pixels alike.
+    #[test]
+    fn the_mean_is_that_of_what_the_picture_shows() {
+        let mut all = album(false);
+        let image = &mut all.shots[0].image;
+        let view = image.view.expect("a view");
+        let size = image.size();
+        for index in 0..image.luminance_cd_m2.len() {
+            let at = [(index % 40) as f64 + 0.5, (index / 40) as f64 + 0.5];
+            image.luminance_cd_m2[index] =
+                view.direction(size, at).map_or(0.0, |d| 100.0 + 50.0 * d.dot(view.forward()));
+        }
+        // Over a hemisphere the mean of cos θ is ½.
+        let made = files(&all, &[], Lang::En).expect("encoded");
+        let json = &made.iter().find(|(name, _)| name == "views.json").expect("views.json").1;
+        let json: serde_json::Value = serde_json::from_slice(json).expect("JSON");
+        let mean = json["pictures"][0]["mean_cd_m2"].as_f64().expect("a mean");
+        assert!((mean - 125.0).abs() < 0.5, "{mean}");
     }
 }

@@ -18,6 +18,8 @@ const VIRIDIS: [Rgb; 11] = [
     [189, 223, 38],
     [253, 231, 37],
 ];
+/// Colours of a picture: as many as eight bits of a component can tell apart.
+const RAMP: usize = 1024;
 /// What lies outside of the projection.
 const OUTSIDE: Rgb = [255, 255, 255];
 
@@ -34,12 +36,14 @@ impl Scale {
     /// The range from the darkest hundredth to the brightest thousandth of the pixels, widened to
     /// 1, 2 or 5 times a power of ten and to at least two decades' ends.
     pub fn of(luminances: impl Iterator<Item = f64>) -> Self {
-        let mut sorted: Vec<f64> = luminances.filter(|value| *value > 0.0 && value.is_finite()).collect();
-        if sorted.is_empty() {
+        let mut values: Vec<f64> = luminances.filter(|value| *value > 0.0 && value.is_finite()).collect();
+        if values.is_empty() {
             return Self { low: 0.1, high: 1000.0 };
         }
-        sorted.sort_unstable_by(f64::total_cmp);
-        let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share).round() as usize];
+        let last = values.len() - 1;
+        let mut at = |share: f64| {
+            *values.select_nth_unstable_by((last as f64 * share).round() as usize, f64::total_cmp).1
+        };
         let high = step_from(at(0.999), true);
         let low = step_from(at(0.01), false).max(high * 1e-6).min(high / 10.0);
         Self { low, high }
@@ -90,10 +94,13 @@ pub fn colour(position: f64) -> Rgb {
 
 /// Colours of a picture row by row; `inside` says which pixels belong to it.
 pub fn colours(luminances: &[f64], scale: Scale, inside: impl Fn(usize) -> bool) -> Vec<u8> {
-    let of = |(index, &luminance): (usize, &f64)| {
-        if inside(index) { colour(scale.position(luminance)) } else { OUTSIDE }
-    };
-    luminances.iter().enumerate().flat_map(of).collect()
+    let ramp: [Rgb; RAMP] = std::array::from_fn(|k| colour(k as f64 / (RAMP - 1) as f64));
+    let mut pixels = vec![0; 3 * luminances.len()];
+    for (index, (pixel, &luminance)) in pixels.chunks_exact_mut(3).zip(luminances).enumerate() {
+        let shown = || ramp[(scale.position(luminance) * (RAMP - 1) as f64).round() as usize];
+        pixel.copy_from_slice(&if inside(index) { shown() } else { OUTSIDE });
+    }
+    pixels
 }
 
 /// PNG of 8-bit colours.

@@ -59,7 +59,7 @@ impl Drawing<'_> {
 
     pub(super) fn title_block(&mut self) {
         let Subject { room, area, .. } = self.subject;
-        let head = format!("{} {} · {}", room.number, room.name, area.name);
+        let head = format!("{} {} · {}", room.number, room.name, words::place_name(self.lang, &area.name));
         let head = cut(head.trim_start(), 15.0, WIDTH - 24.0);
         self.canvas.text([12.0, 16.0], &head, bold(15.0, Anchor::Start));
         let lines = [self.quantity(), self.conditions(), self.results()];

@@ -1,6 +1,9 @@
 //! A requirement and the verdict of the whole in words: what terminal, page, junit and sarif say
 //! alike. Every interval here is the joint one, by which the verdict was given.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
 use super::number;
 use super::words::{self, Lang, Symbol, Term, phrase, word};
 use crate::outcome::{Bound, NormOutcome, Outcome, Requirement, Verdict};
@@ -32,13 +35,24 @@ pub struct Naming {
     pub room: bool,
     /// Name the light scene.
     pub light_scene: bool,
+    /// Name the row of the norm.
+    pub row: bool,
 }
 
 impl Naming {
-    /// Rooms are named if there are several, light scenes if requirements use several.
+    /// Rooms are named if there are several, light scenes if requirements use several, rows if two ask alike
+    /// of one thing.
     pub fn of(outcome: &Outcome) -> Self {
+        let mut clauses = BTreeMap::new();
+        let mut of_norm =
+            outcome.requirements.iter().filter(|r| r.standard != PROJECT && !r.clause.is_empty());
+        let row = of_norm.any(|r| {
+            let asked = (&r.room, &r.subject, &r.light_scene, r.quantity.key(), r.statistic.key());
+            *clauses.entry(asked).or_insert(&r.clause) != &r.clause
+        });
         let first = outcome.requirements.first().map(|r| r.light_scene.as_str());
         Self {
+            row,
             room: outcome.rooms.len() > 1,
             light_scene: outcome.requirements.iter().any(|r| Some(r.light_scene.as_str()) != first),
         }
@@ -85,7 +99,7 @@ pub fn sentence(lang: Lang, requirement: &Requirement, naming: Naming) -> Senten
     };
     Sentence {
         symbol: words::symbol(lang, quantity, statistic),
-        place: place(requirement, naming),
+        place: place(lang, requirement, naming),
         required: limit_text,
         value,
         interval,
@@ -123,19 +137,22 @@ fn margin(lang: Lang, requirement: &Requirement) -> String {
     }
 }
 
-fn place(requirement: &Requirement, naming: Naming) -> String {
-    let mut parts = Vec::new();
+fn place(lang: Lang, requirement: &Requirement, naming: Naming) -> String {
+    let mut parts: Vec<Cow<'_, str>> = Vec::new();
     // Areas that a norm makes are named after their room already.
     let named =
         requirement.subject.strip_prefix(&requirement.room).is_some_and(|rest| rest.starts_with(" · "));
     if naming.room && !named {
-        parts.push(requirement.room.as_str());
+        parts.push(requirement.room.as_str().into());
     }
     if requirement.subject != requirement.room || !naming.room {
-        parts.push(requirement.subject.as_str());
+        parts.push(words::place_name(lang, &requirement.subject));
+    }
+    if naming.row && requirement.standard != PROJECT && !requirement.clause.is_empty() {
+        parts.push(phrase(lang, Term::RowNumber, &[&requirement.clause]).into());
     }
     if naming.light_scene {
-        parts.push(requirement.light_scene.as_str());
+        parts.push(requirement.light_scene.as_str().into());
     }
     parts.join(" · ")
 }
@@ -209,12 +226,17 @@ pub fn overall(lang: Lang, outcome: &Outcome) -> String {
     }
 }
 
-/// The verdict of the whole and, apart from it, its counts.
+/// The verdict of the whole and, apart from it, its counts. It names the norm only where requirements of the
+/// norm decide; where the project's own do, it names those.
 pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) {
     let tally = Tally::of(&outcome.requirements);
-    let name = outcome.norm.as_ref().map(|norm| norm.short.clone());
-    let with = |named: Term, plain: Term| match &name {
-        Some(name) => phrase(lang, named, &[name]),
+    let of_norm = Tally::of(outcome.requirements.iter().filter(|r| r.standard != PROJECT));
+    let norm = outcome.norm.as_ref().map(|norm| norm.short.as_str());
+    let project = word(lang, Term::ProjectRequirements);
+    // Whose requirements give the verdict of the whole.
+    let whose = norm.map(|norm| if of_norm.verdict() == tally.verdict() { norm } else { project });
+    let with = |named: Term, plain: Term| match whose {
+        Some(whose) => phrase(lang, named, &[whose]),
         None => word(lang, plain).to_owned(),
     };
     let total = tally.judged().to_string();
@@ -230,19 +252,21 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
         }
         Some(Verdict::Pass) => {
             counts.push(count(Term::PassedOf, tally.pass));
-            let project = word(lang, Term::ProjectRequirements);
-            match &name {
-                Some(name) => phrase(lang, Term::CompliesWith, &[name]),
-                None => phrase(lang, Term::CompliesWith, &[project]),
-            }
+            phrase(lang, Term::CompliesWith, &[whose.unwrap_or(project)])
         }
         Some(_) => {
             counts.push(count(Term::OpenOf, tally.open));
             counts.push(count(Term::PassedOf, tally.pass));
             with(Term::OpenWith, Term::OpenAll)
         }
-        None => word(lang, Term::NothingRequired).to_owned(),
+        None => match norm {
+            Some(norm) => phrase(lang, Term::NormNotAssessed, &[norm]),
+            None => word(lang, Term::NothingRequired).to_owned(),
+        },
     };
+    if let Some(norm) = norm.filter(|_| of_norm.verdict().is_none() && tally.verdict().is_some()) {
+        counts.push(phrase(lang, Term::NormNotAssessed, &[norm]));
+    }
     if tally.declared > 0 {
         counts.push(phrase(lang, Term::DeclaredCount, &[&tally.declared.to_string()]));
     }
@@ -250,6 +274,18 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
         counts.push(phrase(lang, Term::NotAssessedCount, &[&tally.not_assessed.to_string()]));
     }
     (head, (!counts.is_empty()).then(|| counts.join("; ")))
+}
+
+/// The `standard` of a `[[require]]`.
+const PROJECT: &str = "project";
+
+/// What a room's line says that has a verdict or none.
+pub fn room_verdict(lang: Lang, tally: Tally) -> &'static str {
+    match tally.verdict() {
+        Some(verdict) => words::verdict(lang, verdict),
+        None if tally.not_assessed > 0 => word(lang, Term::NotAssessed),
+        None => word(lang, Term::NothingRequired),
+    }
 }
 
 /// Key of a verdict in files for machines.
@@ -266,7 +302,7 @@ pub fn verdict_key(verdict: Verdict) -> &'static str {
 
 /// One English line about a requirement, for logs that machines show to people.
 pub fn line(requirement: &Requirement) -> String {
-    let naming = Naming { room: true, light_scene: true };
+    let naming = Naming { room: true, light_scene: true, row: false };
     let text = sentence(Lang::En, requirement, naming);
     let because = match &requirement.value {
         Ok(_) => String::new(),
@@ -280,4 +316,72 @@ pub fn line(requirement: &Requirement) -> String {
         text.value,
         text.interval,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    /// Catches: a norm that is said to be complied with, or not, by requirements of the project's own.
+    #[test]
+    fn the_verdict_of_the_whole_names_those_whose_requirements_decide() {
+        use Verdict::{Fail, NotAssessed, Pass, Undecided};
+        let all = sample::outcome();
+        let judged = |norm: &[Verdict], own: &[Verdict]| {
+            let mut outcome = all.clone();
+            let one = |standard: &str, verdict: Verdict| Requirement {
+                standard: standard.into(),
+                verdict,
+                ..all.requirements[0].clone()
+            };
+            outcome.requirements = norm.iter().map(|&v| one("en-12464-1-2021", v)).collect();
+            outcome.requirements.extend(own.iter().map(|&v| one("project", v)));
+            overall(Lang::En, &outcome)
+        };
+        let own = "the project's own requirements";
+        let norm = "EN 12464-1:2021";
+        for (of_norm, of_project, says) in [
+            (&[Pass][..], &[Pass][..], format!("complies with {norm}: 2 of 2 requirements pass")),
+            (&[Pass], &[Fail], format!("does not comply with {own}: 1 of 2 requirements fail")),
+            (&[Fail], &[Pass], format!("does not comply with {norm}: 1 of 2 requirements fail")),
+            (
+                &[Undecided],
+                &[Pass],
+                format!(
+                    "compliance with {norm} is not established: 1 of 2 undecided or without value; 1 of 2 requirements pass"
+                ),
+            ),
+            (
+                &[NotAssessed],
+                &[Pass],
+                format!(
+                    "complies with {own}: 1 of 1 requirements pass; {norm} is not assessed; 1 not assessed"
+                ),
+            ),
+            (
+                &[],
+                &[Fail],
+                format!("does not comply with {own}: 1 of 1 requirements fail; {norm} is not assessed"),
+            ),
+            (&[NotAssessed], &[], format!("{norm} is not assessed: 1 not assessed")),
+            (&[], &[], format!("{norm} is not assessed")),
+        ] {
+            assert_eq!(judged(of_norm, of_project), says);
+        }
+    }
+
+    /// Catches: two lines that differ in their verdict alone, because two rows ask alike of one area.
+    #[test]
+    fn rows_are_named_where_two_ask_alike() {
+        let mut outcome = sample::outcome();
+        assert!(!Naming::of(&outcome).row);
+        let first = outcome.requirements[0].clone();
+        outcome.requirements.push(Requirement { clause: "9.9".into(), ..first });
+        let naming = Naming::of(&outcome);
+        let places: Vec<String> =
+            outcome.requirements.iter().map(|r| sentence(Lang::En, r, naming).place).collect();
+        assert!(places.last().is_some_and(|place| place.contains("row 9.9")), "{places:?}");
+        assert_ne!(places.first(), places.last());
+    }
 }

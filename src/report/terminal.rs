@@ -1,7 +1,9 @@
 //! The table of `check` for a terminal. Columns are aligned by characters, not bytes; colour is
 //! added after alignment so that escape codes do not count as width.
 
-use super::sentence::{Naming, Sentence, Tally, is_at_the_limit, is_unverified, overall, sentence};
+use super::sentence::{
+    Naming, Sentence, Tally, is_at_the_limit, is_unverified, overall, room_verdict, sentence,
+};
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::put;
 use crate::outcome::{Outcome, Requirement, Verdict};
@@ -103,11 +105,8 @@ fn rooms(outcome: &Outcome, style: Style) -> String {
         let name =
             if room.number.is_empty() { room.name.clone() } else { format!("{} {}", room.number, room.name) };
         let verdict = tally.verdict();
-        let said = verdict.map_or(word(lang, Term::NothingRequired), |v| words::verdict(lang, v));
-        rows.push((
-            [one_line(&name), format!("{}/{}", tally.pass, tally.judged()), said.to_owned()],
-            verdict,
-        ));
+        let said = room_verdict(lang, tally).to_owned();
+        rows.push(([one_line(&name), format!("{}/{}", tally.pass, tally.judged()), said], verdict));
     }
     aligned(&rows, [false, true, false], style.colour)
 }
@@ -161,13 +160,16 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
             let parts = [format!("{from}{unit}"), one_line(&modified.reason)];
             let said = phrase(lang, Term::ModifiedFrom, &[&parts[0], &parts[1]]);
             let symbol = words::symbol(lang, quantity, statistic).text();
-            note(true, format!("{symbol} · {}: {said}", one_line(&requirement.subject)));
+            note(
+                true,
+                format!("{symbol} · {}: {said}", one_line(&words::place_name(lang, &requirement.subject))),
+            );
         }
         if let Some(other) = requirement.other_comparison {
             let subject = format!(
                 "{} · {}",
                 words::symbol(lang, requirement.quantity, requirement.statistic).text(),
-                one_line(&requirement.subject)
+                one_line(&words::place_name(lang, &requirement.subject))
             );
             let said = phrase(lang, Term::OtherComparison, &[words::verdict(lang, other)]);
             note(true, format!("{subject}: {said}"));
@@ -240,6 +242,8 @@ mod tests {
     fn nothing_required_is_said() {
         let mut outcome = sample::outcome();
         outcome.requirements.clear();
+        assert_eq!(table(&outcome, PLAIN), "EN 12464-1:2021 is not assessed\n");
+        outcome.norm = None;
         assert_eq!(table(&outcome, PLAIN), "nothing was required\n");
     }
 }

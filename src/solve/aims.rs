@@ -15,6 +15,8 @@ pub(super) const AIMED: u32 = 3;
 pub(super) struct Aims {
     /// Shares summed up.
     cumulative: Vec<f64>,
+    /// For each of equal parts of [0, 1) the side to which its beginning belongs: where the search starts.
+    guide: Vec<u32>,
     /// Chance of an aim per area of each side, 1/m².
     per_m2: Vec<f64>,
 }
@@ -43,7 +45,30 @@ impl Aims {
             return None;
         }
         let per_m2 = (0..patches.sides()).map(|side| luminance(side) / total).collect();
-        Some(Self { cumulative: cumulative.into_iter().map(|sum| sum / total).collect(), per_m2 })
+        let cumulative: Vec<f64> = cumulative.into_iter().map(|sum| sum / total).collect();
+        let mut side = 0;
+        let guide = (0..cumulative.len())
+            .map(|part| {
+                let begins = part as f64 / cumulative.len() as f64;
+                while side + 1 < cumulative.len() && cumulative[side] <= begins {
+                    side += 1;
+                }
+                side as u32
+            })
+            .collect();
+        Some(Self { cumulative, guide, per_m2 })
+    }
+
+    /// The side with a choice in [0, 1): the first whose sum is greater.
+    fn chosen(&self, choice: f64) -> usize {
+        let last = self.cumulative.len() - 1;
+        let part = ((choice * self.guide.len() as f64) as usize).min(last);
+        // Rounding may put a choice into the part after its own.
+        let mut side = self.guide[part.saturating_sub(1)] as usize;
+        while side < last && self.cumulative[side] <= choice {
+            side += 1;
+        }
+        side
     }
 
     /// Weight in links of a link that came straight to a place from `origin`, leaving with density
@@ -62,8 +87,8 @@ impl Aims {
         [choice, u @ ..]: [f64; 4],
     ) -> Option<Aim> {
         let scene = emitters.scene;
-        let side = self.cumulative.partition_point(|sum| *sum <= choice).min(self.cumulative.len() - 1);
-        let place = patches.place(&scene.mesh, side, u);
+        let side = self.chosen(choice);
+        let place = patches.place(side, u);
         let same_side = at.normal.dot(place.point - at.point) > 0.0;
         let (reflectance, transmittance) = scene.bsdf(at.triangle).diffuse();
         let albedo = if same_side { reflectance } else { transmittance };
@@ -89,5 +114,35 @@ impl Aims {
             share: self.share(side, distance_m, cos_there, cosine),
             triangle: hit.triangle,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    /// Catches: a guide that starts beyond the side that it should find, at sides without light too.
+    #[test]
+    fn the_guide_finds_what_a_search_finds() {
+        let mut mesh = crate::geometry::mesh::Mesh::default();
+        let floor = mesh.add_surface("floor", 0, false);
+        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0]];
+        mesh.add_quad(corners.map(|[x, y]| glam::DVec3::new(x, y, 0.0)), floor);
+        let patches = Patches::new(&mesh, 0.01, |_| true);
+        let mut rng = Rng::new(1, 1, 1);
+        let lit: Vec<f64> = (0..patches.sides())
+            .map(|side| if side % 3 == 0 { 0.0 } else { rng.uniform().powi(20) })
+            .collect();
+        let aims = Aims::new(&patches, |side| lit[side]).expect("there is light");
+        let parts = aims.guide.len();
+        let edges =
+            (0..parts).flat_map(|k| [k as f64 / parts as f64, (k as f64 + 1.0 - 1e-12) / parts as f64]);
+        let sums = aims.cumulative.iter().flat_map(|sum| [*sum, sum.next_down()]);
+        let random = (0..20_000).map(|_| rng.uniform());
+        for choice in edges.chain(sums).chain(random).filter(|choice| *choice < 1.0) {
+            let searched = aims.cumulative.partition_point(|sum| *sum <= choice).min(parts - 1);
+            assert_eq!(aims.chosen(choice), searched, "{choice}");
+        }
     }
 }

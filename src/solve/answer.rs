@@ -141,7 +141,7 @@ fn answer_receiver(
             highlights::draw(&bundles, guides.point(sample - gather, rng))
         } else {
             let u = marks.point(sample - gather - guided, rng);
-            let (direction, side) = prepared.beacons.draw(emitters, patches, origin, &chances, u);
+            let (direction, side) = prepared.beacons.draw(patches, origin, &chances, u);
             target = Some(side);
             direction
         };
@@ -387,7 +387,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
             highlights::draw(&bundles, rng.uniforms())
         } else {
             let u = rng.uniforms();
-            let (direction, side) = prepared.beacons.draw(emitters, patches, here.point, &chances, u);
+            let (direction, side) = prepared.beacons.draw(patches, here.point, &chances, u);
             target = Some(side);
             direction
         };

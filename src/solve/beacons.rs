@@ -13,7 +13,6 @@ use glam::DVec3;
 
 use super::covered::place;
 use super::look::{Landing, Sight, Way};
-use crate::emitters::Emitters;
 use crate::field::Patches;
 use crate::scene::Scene;
 use crate::sphere;
@@ -106,11 +105,11 @@ impl Beacons {
             .filter(|&side| emitted[side] > 0.0 || (is_uneven && all[side] > BRIGHT * mean))
             .filter(|&side| patches.area_m2(side) > 0.0)
             .map(|side| {
-                let (middle, front) = patches.centre(&scene.mesh, side);
+                let (middle, front) = patches.centre(side);
                 let normal = if side.is_multiple_of(2) { front } else { -front };
                 let (luminance, area_m2, emitted) = (all[side], patches.area_m2(side), emitted[side]);
                 let box_m = patches
-                    .outlines(&scene.mesh, side / 2)
+                    .outlines(side / 2)
                     .flatten()
                     .fold([middle; 2], |[low, high], corner| [low.min(corner), high.max(corner)]);
                 Bright { side, middle, box_m, normal, area_m2, luminance, emitted, beacon: 0, up_to: 0.0 }
@@ -189,7 +188,6 @@ impl Beacons {
     /// Draws a beacon and a point on it; the direction to it, and the patch side.
     pub(super) fn draw(
         &self,
-        emitters: &Emitters,
         patches: &Patches,
         origin: DVec3,
         chances: &Chances,
@@ -203,7 +201,7 @@ impl Beacons {
         let rest = (choice - before) / (chances.up_to[chosen] - before) * members[members.len() - 1].up_to;
         let member = members.partition_point(|bright| bright.up_to <= rest).min(members.len() - 1);
         let side = members[member].side;
-        let point = place(emitters, patches, side, [u, v, w]).point;
+        let point = place(patches, side, [u, v, w]).point;
         ((point - origin).normalize(), side)
     }
 
@@ -255,7 +253,7 @@ impl Beacons {
 /// Luminance that each patch side emits, cd/m²: 0 where nothing lies before it, as outside of a room's walls.
 pub(super) fn shining(scene: &Scene, patches: &Patches) -> Vec<f64> {
     let seen = |side: usize| {
-        let (middle, front) = patches.centre(&scene.mesh, side);
+        let (middle, front) = patches.centre(side);
         let normal = if side.is_multiple_of(2) { front } else { -front };
         let frame = sphere::frame(normal);
         let origin = middle + normal * scene.tracer.offset_m();
@@ -439,7 +437,7 @@ mod tests {
             let density = beacons.density(&patches, origin, &chances, &sight) * 4.0 * PI / f64::from(n);
             whole += density;
             by_density += weight(direction) * density;
-            let (direction, side) = beacons.draw(&emitters, &patches, origin, &chances, rng.uniforms());
+            let (direction, side) = beacons.draw(&patches, origin, &chances, rng.uniforms());
             look(&emitters, origin, direction, 1.0, &mut rng, &mut sight);
             assert!(Beacons::came_to(&patches, &sight, side), "all is in sight");
             by_draws += weight(direction) / f64::from(n);

@@ -75,7 +75,7 @@ impl Cavities<'_> {
             if probe == PROBES / 2 && lit == 0 && !self.lit[side] {
                 break;
             }
-            let at = place(self.emitters, self.patches, side, places.point(probe, rng));
+            let at = place(self.patches, side, places.point(probe, rng));
             lit += u32::from(self.is_reached(&at, side, rng, &mut sight));
         }
         match lit {
@@ -154,8 +154,8 @@ pub(super) fn sees_glow(
 }
 
 /// A random place of a patch side, as a ray from above would find it.
-pub(super) fn place(emitters: &Emitters, patches: &Patches, side: usize, u: [f64; 3]) -> Landing {
-    let place = patches.place(&emitters.scene.mesh, side, u);
+pub(super) fn place(patches: &Patches, side: usize, u: [f64; 3]) -> Landing {
+    let place = patches.place(side, u);
     let front = side.is_multiple_of(2);
     let normal = if front { place.normal } else { -place.normal };
     Landing {
@@ -247,7 +247,7 @@ mod tests {
             let patches = Patches::new(&scene.mesh, 0.04, |_| true);
             let lit: Vec<bool> = (0..patches.sides())
                 .map(|side| {
-                    let at = place(&emitters, &patches, side, [0.5; 3]);
+                    let at = place(&patches, side, [0.5; 3]);
                     let cavities = Cavities {
                         emitters: &emitters,
                         patches: &patches,
@@ -273,7 +273,7 @@ mod tests {
                     continue;
                 }
                 for _ in 0..8 {
-                    let at = place(&emitters, &patches, side, rng.uniforms());
+                    let at = place(&patches, side, rng.uniforms());
                     let p = at.point - origin;
                     if p.z > 1e-6 {
                         continue;
@@ -315,7 +315,7 @@ mod tests {
         let clear = |glow: Option<&Aims>| {
             let lit: Vec<bool> = (0..patches.sides())
                 .map(|side| {
-                    let at = place(&emitters, &patches, side, [0.5; 3]);
+                    let at = place(&patches, side, [0.5; 3]);
                     let mut rng = Rng::new(3, 0, side as u64);
                     glow.is_some_and(|glow| sees_glow(glow, &emitters, &patches, &at, &mut rng))
                 })
@@ -325,7 +325,7 @@ mod tests {
             cavities.probe(&[], [1, 0]);
             // Inner sides below the tile: those of the floor.
             let floor = (0..patches.sides()).filter(|&side| {
-                let (middle, front) = patches.centre(&scene.mesh, side);
+                let (middle, front) = patches.centre(side);
                 let up = if side.is_multiple_of(2) { front.z } else { -front.z };
                 middle.z < 1e-6 && up > 0.5
             });

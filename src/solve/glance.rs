@@ -4,7 +4,8 @@
 //!
 //! The field errs where a patch is partly hidden under furniture, say. Walks that start where the eyes'
 //! own rays arrive find by how much, on the mean over what is seen of each patch; what is left is the
-//! light's variation within patches.
+//! light's variation within patches. (Interpolation between patches was tried for what an eye is near to: it
+//! made more errors, at furniture, than it mended.)
 
 use std::f64::consts::PI;
 
@@ -20,13 +21,15 @@ use crate::sphere;
 
 /// Streams of look-ups and of walks; blocks use 1, 2, …, the field 0, pictures and eyes the last two.
 const STREAMS: [u64; 2] = [u64::MAX - 2, u64::MAX - 4];
+/// Item of the directions that all points share.
+const SHARED: u64 = u64::MAX;
 /// Rays drawn about highlights, as a share of all, where a glossy plane reflects luminaires.
 const AIMED: f64 = 0.25;
 /// Density of directions over the sphere, 1/sr.
 const UNIFORM: f64 = 0.25 / PI;
 
-/// Points whose replicates still scatter get so many times the rays.
-const AGAIN: u32 = 4;
+/// Points whose replicates still scatter get so many times the rays, one after the other.
+const TIMES: [u32; 3] = [1, 2, 4];
 
 /// How much glances cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +38,8 @@ pub struct GlanceEffort {
     pub replicates: u32,
     /// Rays of each replicate.
     pub rays: u32,
-    /// Relative standard error, in the mean square over the normals, above which a point gets four times the
-    /// rays.
+    /// Relative standard error, in the mean square over the normals, above which a point gets twice the rays,
+    /// and then four times.
     pub rough: f64,
     /// Walks for each replicate and point.
     pub walks: u32,
@@ -84,11 +87,42 @@ pub fn glances(
     let weighted = |channels: &[f64]| channels.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
     let of_table = |table: &Vec<f64>| table.chunks_exact(weights.len().max(1)).map(weighted).collect();
     let tables: Vec<Vec<f64>> = mended.tables.iter().map(of_table).collect();
+    let ways = Ways::new(prepared.seed, normals, effort);
+    let looked_up = Looked { tables: &tables, ways: &ways };
     points
         .par_iter()
         .enumerate()
-        .map(|(item, &point)| look_ups(prepared, point, normals, weights, effort, &tables, item as u64))
+        .map(|(item, &point)| look_ups(prepared, point, normals, weights, effort, &looked_up, item as u64))
         .collect()
+}
+
+/// What look-ups find, a table for each replicate, and where they look.
+struct Looked<'a> {
+    tables: &'a [Vec<f64>],
+    ways: &'a Ways,
+}
+
+/// Directions of look-ups, stratified over the sphere. All points share them, so that their noise shows no
+/// grain from eye to eye and they are made once.
+struct Ways {
+    /// All that points may take: runs of the replicates one after the other.
+    directions: Vec<DVec3>,
+    /// `[direction · normals + normal]`, not below 0.
+    cosines: Vec<f64>,
+}
+
+impl Ways {
+    fn new(seed: u64, normals: &[DVec3], effort: &GlanceEffort) -> Self {
+        let mut rng = Rng::new(seed, STREAMS[0], SHARED);
+        let sequence = Stratified::new(&mut rng);
+        let most = TIMES[TIMES.len() - 1] * effort.rays * effort.replicates;
+        // Uniform, not by the cosines: strata of two numbers pay more than they would.
+        let directions: Vec<DVec3> =
+            (0..most).map(|ray| sphere::uniform_sphere(sequence.point(ray, &mut rng))).collect();
+        let cosines =
+            directions.iter().flat_map(|&way| normals.iter().map(move |normal| normal.dot(way).max(0.0)));
+        Self { cosines: cosines.collect(), directions }
+    }
 }
 
 /// What one walk found the field to lack on a patch side, cd/m² for each channel.
@@ -176,7 +210,7 @@ fn look_ups(
     normals: &[DVec3],
     weights: &[f64],
     effort: &GlanceEffort,
-    tables: &[Vec<f64>],
+    Looked { tables, ways }: &Looked,
     item: u64,
 ) -> Vec<f64> {
     let mut rng = Rng::new(prepared.seed, STREAMS[0], item);
@@ -184,22 +218,25 @@ fn look_ups(
     let mut met = vec![0.0; prepared.scene.channels.len()];
     let mut bundles = Vec::new();
     let count = normals.len();
-    let cosines = |direction: DVec3| normals.iter().map(move |normal| normal.dot(direction).max(0.0));
-    prepared.highlights.about(&prepared.emitters, point, |way| cosines(way).sum(), &mut bundles);
+    let cosine = |normal: &DVec3, direction: DVec3| normal.dot(direction).max(0.0);
+    let of_all = |direction| normals.iter().map(|normal| cosine(normal, direction)).sum();
+    prepared.highlights.about(&prepared.emitters, point, of_all, &mut bundles);
     let aimed = if bundles.is_empty() { 0.0 } else { AIMED };
     let mut sums = vec![0.0; effort.replicates as usize * count];
     // The replicates share one sequence, so that the mean has the strata of all rays; that they keep apart makes
     // their spread, the stated error, larger than the mean's own.
-    let (ways, aims) = (Stratified::new(&mut rng), Stratified::new(&mut rng));
+    let aims = Stratified::new(&mut rng);
+    let mut about = vec![0.0; count];
     let mut done = [0; 2];
-    for rays in [effort.rays, AGAIN * effort.rays] {
+    for rays in TIMES.map(|times| times * effort.rays) {
         if done[0] > 0 && spread(&sums, count) <= effort.rough {
             break;
         }
         let due = [rays, (aimed * f64::from(rays)).ceil() as u32];
         for (replicate, table) in tables.iter().enumerate() {
-            let mut sample = |direction: DVec3, rng: &mut Rng| {
-                if !in_sight(normals, direction) {
+            let mut sample = |direction: DVec3, cosines: &[f64], rng: &mut Rng| {
+                // Behind an eye that looks one way only there is nothing to see.
+                if cosines.iter().all(|cosine| *cosine <= 0.0) {
                     return;
                 }
                 let highlighted = if aimed > 0.0 { highlights::density(&bundles, direction) } else { 0.0 };
@@ -213,7 +250,7 @@ fn look_ups(
                 }
                 luminance += met.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
                 let own = &mut sums[replicate * count..(replicate + 1) * count];
-                for (sum, cosine) in own.iter_mut().zip(cosines(direction)) {
+                for (sum, cosine) in own.iter_mut().zip(cosines) {
                     *sum += cosine * luminance / mixture;
                 }
             };
@@ -222,14 +259,16 @@ fn look_ups(
                 let first = done[which] * effort.replicates + replicate as u32 * (due[which] - done[which]);
                 first..first + due[which] - done[which]
             };
-            for number in run(0) {
-                // Uniform, not by the cosines: strata of two numbers pay more than they would.
-                let direction = sphere::uniform_sphere(ways.point(number, &mut rng));
-                sample(direction, &mut rng);
+            for number in run(0).map(|number| number as usize) {
+                let cosines = &ways.cosines[number * count..(number + 1) * count];
+                sample(ways.directions[number], cosines, &mut rng);
             }
             for number in run(1) {
                 let direction = highlights::draw(&bundles, aims.point(number, &mut rng));
-                sample(direction, &mut rng);
+                for (about, normal) in about.iter_mut().zip(normals) {
+                    *about = cosine(normal, direction);
+                }
+                sample(direction, &about, &mut rng);
             }
         }
         done = due;

@@ -3,8 +3,8 @@
 //!
 //! Two of the three ways have no interval, for what they approximate is not sampled again:
 //! [`Detail::Stored`] shows the field as it is, [`Detail::Exact`] adds direct light computed where it
-//! is seen to the interpolated indirect part of the field, and samples glossy lobes. [`replicate`] is unbiased: independent
-//! blocks of the solver's own answer.
+//! is seen to the interpolated indirect part of the field, and samples glossy lobes. [`replicate`] is
+//! unbiased: independent blocks of the solver's own answer.
 
 mod bends;
 mod direct;
@@ -12,23 +12,29 @@ mod even;
 mod exposure;
 mod lobes;
 mod openings;
+mod spots;
+mod tile;
+mod unshadowed;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 pub use self::exposure::{Exposure, expose, from_store};
 use self::openings::Beam;
+use self::tile::Tile;
 use super::look::{Landing, Way};
 use super::{Counts, PARTS, Prepared, answer};
 use crate::emitters::Emitters;
 use crate::field::{LuminanceField, Smooth};
+use crate::geometry::trace::Hit;
 use crate::image::{LuminanceImage, View};
 use crate::query::Ray;
 use crate::rng::Rng;
 use crate::scene::{BodiesMet, Channel, Scene};
 
-/// Edge of the squares of pixels that are worked on together.
-const TILE: usize = 8;
+/// Edge of the squares of pixels that are worked on together, and of the smaller ones whose shadows are.
+const TILE: usize = 16;
+const BLOCK: usize = 8;
 /// Branches of a ray at mirrors and panes that carry less than this share of its light are cut.
 pub const FAINTEST: f64 = 1e-4;
 /// Longest row of mirrors and panes that is followed.
@@ -47,14 +53,19 @@ pub enum Detail {
 /// A field under one light scene.
 #[derive(Debug)]
 pub struct Picture<'e> {
+    detail: Detail,
     emitters: &'e Emitters<'e>,
     field: &'e LuminanceField,
     /// Factor of each channel.
     weights: Vec<f64>,
+    /// Luminaires and images that shine.
+    lamps: Vec<direct::Lamp<'e>>,
+    /// Luminaires that shine and are more than points.
+    openings: Vec<usize>,
     /// Stored luminance of each patch side, cd/m².
     stored: Vec<f64>,
-    /// Indirect luminance per unit of reflectance, cd/m².
-    indirect: Smooth,
+    /// Indirect luminance per unit of reflectance, cd/m², unless the stored one is shown.
+    indirect: Option<Smooth>,
     /// The same of all diffuse light, where glossy surfaces may look at it.
     whole: Option<Smooth>,
     seed: u64,
@@ -71,7 +82,7 @@ pub fn omissions(scene: &Scene, detail: Detail) -> Vec<String> {
         }
     }];
     if detail == Detail::Exact {
-        all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and from two to eight in them, by its part of the light; unshadowed light may be off by 0.4 %.");
+        all.push("The visible share of an opening is taken from one ray a pixel outside of half-shadows and from two to eight in them, by its part of the light, that of a reflected one from one ray a pixel, or for four pixels where it has less than 1 % of the light; unshadowed light may be off by 0.4 %.");
     }
     all.push("Every pixel is looked at in its centre only, but for the openings of luminaires: edges of surfaces are not smoothed, and what is narrower than a pixel may be missed.");
     if scene.surfaces().any(|bsdf| bsdf.specular(1.0).is_some()) {
@@ -107,12 +118,12 @@ pub fn render(
     picture: &Picture,
     view: &View,
     size: [usize; 2],
-    detail: Detail,
     tell: &(dyn Fn(usize) + Sync),
 ) -> (LuminanceImage, Counts) {
     let [width, height] = size;
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let noisy = detail == Detail::Exact && picture.whole.is_some();
+    let noisy = picture.whole.is_some();
+    let raster = view.raster(size);
     let bands: Vec<(Vec<f64>, Vec<f64>, Counts)> = (0..height.div_ceil(TILE))
         .into_par_iter()
         .map(|band| {
@@ -120,10 +131,10 @@ pub fn render(
             let mut values = vec![0.0; rows * width];
             let mut squares = vec![0.0; if noisy { rows * width } else { 0 }];
             let mut counts = Counts::default();
+            let mut sights: [Sight; TILE * TILE] = std::array::from_fn(|_| Sight::default());
             for column in (0..width).step_by(TILE) {
-                let corner = [column, band * TILE];
-                let extent = [TILE.min(width - column), rows];
-                tile(picture, view, size, corner, extent, detail, [&mut values, &mut squares], &mut counts);
+                let tile = Tile::of(&raster, size, [column, band * TILE]);
+                tile.work(picture, view.eye, &mut sights, [&mut values, &mut squares], &mut counts);
             }
             tell(done.fetch_add(rows, std::sync::atomic::Ordering::Relaxed) + rows);
             (values, squares, counts)
@@ -142,79 +153,35 @@ pub fn render(
     (image, counts)
 }
 
-#[allow(clippy::too_many_arguments, reason = "one call, in the loop above")]
-fn tile(
-    picture: &Picture,
-    view: &View,
-    size: [usize; 2],
-    corner: [usize; 2],
-    extent: [usize; 2],
-    detail: Detail,
-    [values, squares]: [&mut [f64]; 2],
-    counts: &mut Counts,
-) {
-    let mut sights: [Sight; TILE * TILE] = std::array::from_fn(|_| Sight::default());
-    // Lines of sight through the corners of the tile's pixels, row by row.
-    let grid: [Option<DVec3>; (TILE + 1) * (TILE + 1)] = std::array::from_fn(|k| {
-        let at = [corner[0] + k % (TILE + 1), corner[1] + k / (TILE + 1)];
-        (at[0] <= size[0] && at[1] <= size[1]).then(|| view.direction(size, at.map(|x| x as f64))).flatten()
-    });
-    for (index, sight) in sights.iter_mut().enumerate().take(extent[1] * TILE) {
-        let (column, row) = (index % TILE, index / TILE);
-        if column >= extent[0] {
-            continue;
-        }
-        let [x, y] = [corner[0] + column, corner[1] + row];
-        if let Some(direction) = view.direction(size, [x as f64 + 0.5, y as f64 + 0.5]) {
-            let first = row * (TILE + 1) + column;
-            let corners = [first, first + 1, first + TILE + 1, first + TILE + 2].map(|k| grid[k]);
-            let beam = Beam::of_pixel(view.eye, corners, (y * size[0] + x) as u64);
-            sight.look(picture, view.eye, direction, &Path::fresh(beam), counts);
-        }
-    }
-    let out = |index: usize| index / TILE * size[0] + corner[0] + index % TILE;
-    for (index, sight) in sights.iter().enumerate().filter(|(_, sight)| sight.luminance != 0.0) {
-        values[out(index)] += sight.luminance;
-    }
-    for (index, sight) in sights.iter().enumerate() {
-        for place in &sight.places {
-            values[out(index)] += place.share * picture.reflected(&place.landing, detail);
-        }
-    }
-    if detail == Detail::Exact {
-        let number = (corner[1] / TILE) * size[0].div_ceil(TILE) + corner[0] / TILE;
-        let mut rng = Rng::new(picture.seed, STREAM, number as u64);
-        direct::add(picture, &sights, &mut rng, counts, |index, luminance| values[out(index)] += luminance);
-        if picture.whole.is_some() {
-            lobes::add(picture, &sights, &mut rng, counts, |index, luminance, square| {
-                values[out(index)] += luminance;
-                squares[out(index)] += square;
-            });
-        }
-    }
-}
-
 /// A branch of a ray.
 #[derive(Clone, Debug)]
-struct Path {
+struct Path<'o> {
     share: f64,
     bounces: u32,
+    way: Way,
     beam: Option<Beam>,
+    /// Openings that it may meet.
+    openings: &'o [usize],
     bodies: BodiesMet,
 }
 
-impl Path {
-    fn fresh(beam: Option<Beam>) -> Self {
-        Self { share: 1.0, bounces: 0, beam, bodies: BodiesMet::default() }
+impl<'o> Path<'o> {
+    fn fresh(beam: Option<Beam>, openings: &'o [usize]) -> Self {
+        Self { share: 1.0, bounces: 0, way: Way::Clear, beam, openings, bodies: BodiesMet::default() }
     }
 }
 
 impl Sight {
-    /// Follows a ray and its branches.
-    fn look(&mut self, picture: &Picture, origin: DVec3, direction: DVec3, path: &Path, counts: &mut Counts) {
+    /// Follows a ray that meets `hit`, and its branches.
+    fn look<'o>(
+        &mut self,
+        picture: &'o Picture,
+        (origin, direction): (DVec3, DVec3),
+        hit: Option<Hit>,
+        path: &Path<'o>,
+        counts: &mut Counts,
+    ) {
         let scene = picture.emitters.scene;
-        counts.rays += 1;
-        let hit = scene.tracer.closest(origin, direction, &[]);
         self.luminance += path.share * picture.openings((origin, direction), hit.as_ref(), path);
         let Some(hit) = hit else {
             counts.escaped += 1;
@@ -235,7 +202,7 @@ impl Sight {
                 front: hit.front,
                 to_eye: -direction,
                 weight: 1.0,
-                way: if path.bounces == 0 { Way::Clear } else { Way::Turned },
+                way: path.way,
             };
             self.places.push(Seen { landing, share: path.share });
             return;
@@ -245,12 +212,15 @@ impl Sight {
             [(reflected, point + lift, direction + 2.0 * cos * normal), (passed, point - lift, direction)];
         for (share, origin, direction) in onward {
             let (share, bounces) = (path.share * share, path.bounces + 1);
-            let mut next = Path { share, bounces, beam: path.beam, bodies: path.bodies.clone() };
+            let mut next = Path { share, bounces, bodies: path.bodies.clone(), ..*path };
             if direction.dot(normal) > 0.0 {
+                next.openings = &picture.openings;
+                next.way = Way::Turned;
                 next.beam = path.beam.map(|beam| beam.reflected(point, normal));
                 next.bodies.reflected(scene, hit.triangle);
             } else {
                 next.bodies.passed(scene, hit.triangle);
+                next.way = if path.way == Way::Turned { Way::Turned } else { Way::Panes };
             }
             if next.share < FAINTEST {
                 continue;
@@ -259,7 +229,9 @@ impl Sight {
                 counts.cut += 1;
                 continue;
             }
-            self.look(picture, origin, direction, &next, counts);
+            counts.rays += 1;
+            let hit = scene.tracer.closest(origin, direction, &[]);
+            self.look(picture, (origin, direction), hit, &next, counts);
         }
     }
 }
@@ -294,15 +266,12 @@ impl Picture<'_> {
     }
 
     /// Luminance that the field states at a place: all of it, or the interpolated indirect part.
-    fn reflected(&self, landing: &Landing, detail: Detail) -> f64 {
+    fn reflected(&self, landing: &Landing) -> f64 {
         let side = self.field.patches().side_at(landing.triangle, landing.barycentric, landing.front);
-        match detail {
-            Detail::Stored => self.stored[side],
-            Detail::Exact => {
-                let (reflectance, transmittance) = self.emitters.scene.bsdf(landing.triangle).diffuse();
-                (reflectance + transmittance) * self.indirect.at(side, landing.point)
-            }
-        }
+        self.indirect.as_ref().map_or(self.stored[side], |indirect| {
+            let (reflectance, transmittance) = self.emitters.scene.bsdf(landing.triangle).diffuse();
+            (reflectance + transmittance) * indirect.at(side, landing.point)
+        })
     }
 }
 

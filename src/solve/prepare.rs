@@ -185,7 +185,7 @@ fn first_light(
     let mut scratch = Vec::new();
     let sequence = Stratified::new(&mut rng);
     for sample in 0..DIRECT_SAMPLES {
-        let at = place(emitters, patches, side, sequence.point(sample, &mut rng));
+        let at = place(patches, side, sequence.point(sample, &mut rng));
         add_direct(emitters, &at, f64::INFINITY, &mut rng, &mut scratch, &mut direct);
     }
     for value in &mut direct {
@@ -193,7 +193,7 @@ fn first_light(
     }
     let shone_on = |glow: &Aims, rng: &mut Rng| {
         (0..DIRECT_SAMPLES).any(|sample| {
-            let at = place(emitters, patches, side, sequence.point(sample, rng));
+            let at = place(patches, side, sequence.point(sample, rng));
             sees_glow(glow, emitters, patches, &at, rng)
         })
     };
@@ -220,8 +220,8 @@ impl Links<'_> {
 
     /// Places of a partly covered side that light reaches, out of [`SPOTS`].
     fn spots(&self, side: usize, places: Stratified, rng: &mut Rng, sight: &mut Sight) -> Vec<Landing> {
-        let Cavities { emitters, patches, .. } = self.cavities;
-        let tried = (0..SPOTS).map(|spot| place(emitters, patches, side, places.point(spot, rng)));
+        let patches = self.cavities.patches;
+        let tried = (0..SPOTS).map(|spot| place(patches, side, places.point(spot, rng)));
         let tried: Vec<Landing> = tried.collect();
         tried.into_iter().filter(|at| self.cavities.is_reached(at, side, rng, sight)).collect()
     }
@@ -257,7 +257,7 @@ fn collect(common: &Links, side: usize, FirstLight { mut direct, mut rng, .. }: 
     let mut taken = Vec::new();
     for link in 0..count {
         let again = spots.get(link as usize % spots.len().max(1)).copied();
-        let at = again.unwrap_or_else(|| place(emitters, patches, side, places.point(link, rng)));
+        let at = again.unwrap_or_else(|| place(patches, side, places.point(link, rng)));
         if cover == Cover::Partial && again.is_none() {
             if !cavities.is_reached(&at, side, rng, &mut sight) {
                 continue;

@@ -81,15 +81,14 @@ fn misplaced(emitters: &Emitters, patches: &Patches, patch: usize) -> (f64, f64)
 /// Spots smaller than the patch that lamps above it make where their perpendicular meets it: illuminance in
 /// front and behind there, and the area π d² over which it falls off, m². Samples would miss them.
 fn spots(emitters: &Emitters, patches: &Patches, patch: usize) -> Vec<([f64; 2], f64)> {
-    let mesh = &emitters.scene.mesh;
     let (triangle, area_m2) = (patches.triangle(2 * patch), patches.area_m2(2 * patch));
-    let (middle, _) = patches.centre(mesh, 2 * patch);
+    let (middle, _) = patches.centre(2 * patch);
     let spot = |source: &Source| {
         let near = (source.position - middle).length_squared() < NEAR * area_m2;
         if !near || source.mirror.is_some() || !emitters.lights(source, triangle) {
             return None;
         }
-        patches.outlines(mesh, patch).find_map(|[a, b, c]| {
+        patches.outlines(patch).find_map(|[a, b, c]| {
             let normal = (b - a).cross(c - a).normalize();
             let height_m = (source.position - a).dot(normal);
             let spot_m2 = PI * (height_m * height_m).max(source.radius_m * source.radius_m);

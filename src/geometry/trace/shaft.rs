@@ -43,9 +43,8 @@ impl Bounds {
 
 impl Tracer {
     /// Whether every line from one of `from` to one of `to` is free of triangles, surfaces in `blind` left
-    /// out. `facing` is a direction in which all of `to` lies from `from`, such as the normal of the surface
-    /// that `from` lies on.
-    pub fn is_clear(&self, from: &[DVec3], to: &[DVec3], facing: DVec3, blind: &[u32]) -> bool {
+    /// out. `facing` are normals of surfaces on which `from` or `to` lies, towards the other.
+    pub fn is_clear(&self, from: &[DVec3], to: &[DVec3], facing: &[DVec3], blind: &[u32]) -> bool {
         let (Some(a), Some(b)) = (Bounds::of(from), Bounds::of(to)) else { return true };
         let mut planes = Vec::with_capacity(MOST);
         let mut add = |normal: DVec3, limit: f64| {
@@ -56,8 +55,10 @@ impl Tracer {
                 limit32: (limit - normal.dot(self.centre)) as f32,
             });
         };
-        let least = from.iter().chain(to).map(|p| facing.dot(*p)).fold(f64::INFINITY, f64::min);
-        add(-facing, -least);
+        for &normal in facing {
+            let least = from.iter().chain(to).map(|p| normal.dot(*p)).fold(f64::INFINITY, f64::min);
+            add(-normal, -least);
+        }
         for normal in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
             add(normal, a.most(normal).max(b.most(normal)));
         }

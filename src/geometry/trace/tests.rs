@@ -144,12 +144,12 @@ fn what_is_called_clear_lets_every_ray_pass() {
             };
             from.iter().any(|p| to.iter().any(|q| blocks(p, q)))
         };
-        if tracer.is_clear(&from, &to, b - a, &[]) {
+        if tracer.is_clear(&from, &to, &[b - a], &[]) {
             clear += 1;
             assert!(!blocked(), "a ray from {a} to {b} is blocked");
         }
         // Broken twin: a shaft to the first point only.
-        hidden_behind_twins += i32::from(tracer.is_clear(&from, &to[..1], b - a, &[]) && blocked());
+        hidden_behind_twins += i32::from(tracer.is_clear(&from, &to[..1], &[b - a], &[]) && blocked());
     }
     assert!(clear > 300 && hidden_behind_twins > 5, "{clear} {hidden_behind_twins}");
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 
 use super::area_surface::on_surface;
-use super::draft::{Draft, Located, in_room, locate, room_named, room_names};
+use super::draft::{Draft, Located, in_room, locate_area, room_named, room_names};
 use super::lists::Table;
 use super::{settings, zones};
 use crate::geometry::polygon;
@@ -40,6 +40,9 @@ pub fn add(
         let span = section.span();
         let section = section.get_ref();
         let name = section.name.get_ref();
+        if name.trim().is_empty() {
+            context.error(&section.name.span(), "the area's name is empty", "");
+        }
         let taken = |draft: &Draft| draft.areas.iter().any(|other| other.name == *name);
         if drafts.iter().any(taken) {
             let message = format!("a second area \"{name}\"");
@@ -223,8 +226,7 @@ fn shape(
         return None;
     }
     let name = section.name.get_ref();
-    let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
-    let (world, room) = match (wanted.ok()?, locate(drafts, centre)) {
+    let (world, room) = match (wanted.ok()?, locate_area(drafts, &corners)) {
         (Some((world, room)), _) | (None, Located::In(world, room)) => (world, room),
         (None, Located::Outside) => {
             let message = format!("area \"{name}\" lies outside of every room");

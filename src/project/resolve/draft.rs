@@ -40,11 +40,21 @@ pub struct Draft {
 }
 
 /// Maintenance factors given for a room.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct RoomFactors {
+    /// Where they are written.
+    pub span: Range<usize>,
     pub llmf: Option<f64>,
     pub lsf: Option<f64>,
     pub lmf: Option<f64>,
+}
+
+impl RoomFactors {
+    /// Names of those that are given.
+    pub fn given(&self) -> Vec<&'static str> {
+        let named = [("llmf", self.llmf), ("lsf", self.lsf), ("lmf", self.lmf)];
+        named.into_iter().filter(|(_, factor)| factor.is_some()).map(|(name, _)| name).collect()
+    }
 }
 
 /// Where a point lies.
@@ -156,6 +166,34 @@ pub fn locate(drafts: &[Draft], point: DVec3) -> Located {
         }
     }
     Located::Outside
+}
+
+/// The room of an area: the one with most of its points, among several such the one with their centre. Neither
+/// an angled outline nor points in both legs of an angled room have their centre in it.
+pub fn locate_area(drafts: &[Draft], points: &[DVec3]) -> Located {
+    let centre = points.iter().sum::<DVec3>() / points.len() as f64;
+    let count = |room: &Room| points.iter().filter(|point| in_room(room, **point)).count();
+    let counts: Vec<(usize, usize, &Room, usize)> =
+        rooms(drafts).map(|(world, index, room)| (world, index, room, count(room))).collect();
+    let most = counts.iter().map(|(.., count)| *count).max().unwrap_or(0);
+    let found = locate(drafts, centre);
+    if most == 0 {
+        return found;
+    }
+    let best = || counts.iter().filter(|(.., count)| *count == most);
+    if let Located::In(world, room) = found
+        && best().any(|&(w, r, ..)| (w, r) == (world, room))
+    {
+        return found;
+    }
+    let area_m2 = |room: &Room| polygon::signed_area_m2(&room.footprint);
+    let Some(&(world, room, first, _)) = best().min_by(|a, b| area_m2(a.2).total_cmp(&area_m2(b.2))) else {
+        return found;
+    };
+    match best().find(|(other, ..)| *other != world) {
+        Some((_, _, other, _)) => Located::Ambiguous(format!("\"{}\" and \"{}\"", first.name, other.name)),
+        None => Located::In(world, room),
+    }
 }
 
 /// Whether a point lies in a room, boundary included.

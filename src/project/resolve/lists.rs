@@ -40,6 +40,11 @@ impl Table {
             }
         };
         let hint = format!("the header is {}", columns.join(","));
+        for (index, name) in header.iter().enumerate() {
+            if header.iter().take(index).any(|earlier| earlier == name) {
+                context.error_in(&file, &text, 1, format!("a second column \"{name}\""), &hint);
+            }
+        }
         for name in header.iter().filter(|name| !columns.contains(name)) {
             let hint = suggestion(name, columns.iter().copied());
             let message = format!("unknown column \"{name}\"");
@@ -82,6 +87,11 @@ impl Table {
     /// Reports a mistake in a row.
     pub fn error(&self, row: &Row, message: String, hint: &str, context: &mut Context) {
         context.error_in(&self.file, &self.text, row.line, message, hint);
+    }
+
+    /// Warns of a row.
+    pub fn warn(&self, row: &Row, message: String, hint: &str, context: &mut Context) {
+        context.warn_in(&self.file, &self.text, row.line, message, hint);
     }
 
     /// A finite number, `None` where the cell is empty; `Err` after a reported mistake.

@@ -28,8 +28,13 @@ pub struct Kind {
 }
 
 impl Kind {
+    /// The room's factors that do not hold for this type, since it brings its own.
+    pub fn passed_over(&self, factors: &RoomFactors) -> Vec<&'static str> {
+        if self.own_maintenance { factors.given() } else { Vec::new() }
+    }
+
     /// The type as it hangs in a room.
-    pub fn in_room(&mut self, factors: RoomFactors, room: &str) -> Option<Arc<LuminaireType>> {
+    pub fn in_room(&mut self, factors: &RoomFactors, room: &str) -> Option<Arc<LuminaireType>> {
         let base = self.base.as_ref()?;
         let maintenance = if self.own_maintenance {
             base.maintenance

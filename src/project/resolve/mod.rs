@@ -80,6 +80,7 @@ pub fn resolve(file: &File, context: &mut Context) -> Option<Project> {
         declared,
         accuracy,
         biases: std::mem::take(&mut context.biases),
+        warnings: std::mem::take(&mut context.warnings),
         inputs: std::mem::take(&mut context.inputs),
     })
 }

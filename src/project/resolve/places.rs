@@ -1,5 +1,6 @@
 //! `[[place]]` and the list of places → luminaires in their rooms.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
@@ -29,6 +30,7 @@ pub(super) struct Hanging {
 
 /// Hangs all luminaires.
 pub fn add(file: &File, mut kinds: Vec<Kind>, drafts: &mut [Draft], context: &mut Context) {
+    let mut hung = Hung::default();
     for section in &file.places {
         let span = section.span();
         let section = section.get_ref();
@@ -49,6 +51,9 @@ pub fn add(file: &File, mut kinds: Vec<Kind>, drafts: &mut [Draft], context: &mu
                     context.error(&span, message, hint);
                 };
                 hang(&hanging, &mut kinds, point, aim, drafts, context, &mut report);
+                if let Some(message) = hung.again(&hanging, &kinds, point, aim) {
+                    context.warn(&span, message, TWICE);
+                }
             }
         }
     }
@@ -62,7 +67,32 @@ pub fn add(file: &File, mut kinds: Vec<Kind>, drafts: &mut [Draft], context: &mu
                 table.error(row, message, hint, context);
             };
             hang(&hanging, &mut kinds, point, aim, drafts, context, &mut report);
+            if let Some(message) = hung.again(&hanging, &kinds, point, aim) {
+                table.warn(row, message, TWICE, context);
+            }
         }
+    }
+}
+
+/// What to do about two luminaires in one place.
+const TWICE: &str = "leave one of them out, or move it";
+
+/// What hangs already: type, group, place in 0.1 mm, aim.
+#[derive(Default)]
+struct Hung(BTreeSet<(usize, String, [i64; 3], [i64; 3])>);
+
+impl Hung {
+    /// Notes a luminaire; where one of its type and group hangs and aims alike already, says so.
+    fn again(&mut self, hanging: &Hanging, kinds: &[Kind], point: DVec3, aim: DVec3) -> Option<String> {
+        let rounded = |v: DVec3| v.to_array().map(|x| (x * 1e4).round() as i64);
+        let key = (hanging.kind, hanging.group.clone(), rounded(point), rounded(aim.normalize_or_zero()));
+        (!self.0.insert(key)).then(|| {
+            let name = &kinds[hanging.kind].name;
+            format!(
+                "luminaire \"{name}\" hangs at ({}, {}, {}) more than once; their light adds up",
+                point.x, point.y, point.z
+            )
+        })
     }
 }
 
@@ -273,7 +303,17 @@ pub(super) fn hang(
         body.extend(found);
     }
     let name = draft.rooms[room].name.clone();
-    let Some(kind) = kind.in_room(draft.factors[room], &name) else {
+    let passed_over = kind.passed_over(&draft.factors[room]);
+    if !passed_over.is_empty() {
+        let message = format!(
+            "luminaire \"{}\" has a maintenance of its own: {} of room \"{name}\" does not hold for it",
+            kind.name,
+            passed_over.join(", ")
+        );
+        let hint = "leave the luminaire's `maintenance` out where the room's factors are to hold";
+        context.warn(&draft.factors[room].span, message, hint);
+    }
+    let Some(kind) = kind.in_room(&draft.factors[room], &name) else {
         return;
     };
     draft.rooms[room].luminaires.push(draft.luminaires.len());

@@ -30,7 +30,10 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
         });
         let bounds = [&section.min, &section.max];
         for bound in bounds.into_iter().flatten() {
-            context.finite(&[*bound.get_ref()], &bound.span());
+            if !bound.get_ref().is_finite() {
+                let message = format!("a limit must be a finite number, found {}", bound.get_ref());
+                context.error(&bound.span(), message, "leave out what has no limit");
+            }
         }
         if bounds.into_iter().all(Option::is_none) {
             context.missing(&span, "a requirement needs `min` or `max`", "");

@@ -67,13 +67,16 @@ pub fn add_room(
     let (footprint, floor_m, height_m) = boundary;
     let mut factors = RoomFactors::default();
     let mut rsmf = 1.0;
+    check_extent(&footprint, height_m, name, section, draft, context);
     if let Some(mf) = section.and_then(|section| section.mf.as_ref()) {
+        let span = mf.span();
         let mf = mf.get_ref();
         let mut factor = |value: &Option<At<f64>>, name: &str| {
             let value = value.as_ref()?;
             check_factor(value, name, context).then_some(*value.get_ref())
         };
         factors = RoomFactors {
+            span,
             llmf: factor(&mf.llmf, "llmf"),
             lsf: factor(&mf.lsf, "lsf"),
             lmf: factor(&mf.lmf, "lmf"),
@@ -113,6 +116,34 @@ pub fn add_room(
     draft.factors.push(factors);
 }
 
+/// Longest room that is not asked about, m.
+const LONGEST_M: f64 = 1000.0;
+
+/// Rooms beyond a kilometre are drawn in millimetres more often than they are built.
+fn check_extent(
+    footprint: &[DVec2],
+    height_m: f64,
+    name: &str,
+    section: Option<&RoomSection>,
+    draft: &Draft,
+    context: &mut Context,
+) {
+    let low = footprint.iter().copied().reduce(DVec2::min).unwrap_or_default();
+    let high = footprint.iter().copied().reduce(DVec2::max).unwrap_or_default();
+    let size = high - low;
+    if !(size.max_element().max(height_m) > LONGEST_M) {
+        return;
+    }
+    let span = section.map_or_else(|| draft.span.clone(), |section| section.name.span());
+    let message = format!("room \"{name}\" measures {:.0} m × {:.0} m × {height_m:.0} m", size.x, size.y);
+    let hint = if draft.cad {
+        "glTF counts in metres: a drawing in millimetres is exported with the scale 0.001"
+    } else {
+        "lengths are metres: 6000 mm are 6"
+    };
+    context.warn(&span, message, hint);
+}
+
 /// A maintenance factor: greater than 0, at most 1.
 pub fn check_factor(value: &At<f64>, name: &str, context: &mut Context) -> bool {
     let ok = *value.get_ref() > 0.0 && *value.get_ref() <= 1.0;
@@ -139,6 +170,9 @@ fn mean_of(draft: &Draft, part: &[(u32, f64)]) -> Option<f64> {
 fn check_names(sections: &[At<RoomSection>], context: &mut Context) {
     for (index, section) in sections.iter().enumerate() {
         let RoomSection { name, footprint, node, height, floor, reflectances, .. } = section.get_ref();
+        if name.get_ref().trim().is_empty() {
+            context.error(&name.span(), "the room's name is empty", "");
+        }
         let earlier = &sections[..index];
         if earlier.iter().any(|other| other.get_ref().name.get_ref() == name.get_ref()) {
             let message = format!("a second room \"{}\"", name.get_ref());

@@ -182,7 +182,7 @@ pub fn light_scenes(file: &File, drafts: &[Draft], context: &mut Context) -> Vec
                 let message = format!("no luminaire group \"{}\"", group.get_ref());
                 context.error(&group.span(), message, &hint);
             }
-            context.in_range(factor, 0.0, f64::INFINITY, "a factor");
+            check_factor(factor, context);
             checked.push((group.get_ref().clone(), *factor.get_ref()));
         }
         scenes.push(LightScene { name: name.get_ref().clone(), factors: Some(checked) });
@@ -192,6 +192,20 @@ pub fn light_scenes(file: &File, drafts: &[Draft], context: &mut Context) -> Vec
         context.error(&(0..0), "[light_scenes] lists no scene", hint);
     }
     scenes
+}
+
+/// A factor of a light scene dims and nothing else, like `dim`.
+fn check_factor(factor: &At<f64>, context: &mut Context) {
+    let value = *factor.get_ref();
+    if !(0.0..=1.0).contains(&value) {
+        let message = format!("a factor of a light scene must lie in 0 … 1, found {value}");
+        let hint = if value > 1.0 && value <= 100.0 {
+            format!("{value} % is {}; the flux of a luminaire is its own key `flux`", value / 100.0)
+        } else {
+            "a group at full output is 1, one that is off 0".to_owned()
+        };
+        context.error(&factor.span(), message, &hint);
+    }
 }
 
 /// `[declared]`, per luminaire type or room.

@@ -12,6 +12,7 @@ use crate::glare::index::{INDICES, parse};
 use crate::project::context::Context;
 use crate::project::schema::{At, File, SweepSection, ViewpointSection};
 use crate::project::{LightScene, Viewpoint};
+use crate::sphere::{azimuth_tilt_deg, from_azimuth_tilt, rounded_deg};
 
 /// Directions one sweep may have.
 const MAX_DIRECTIONS: f64 = 3600.0;
@@ -27,15 +28,17 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             continue;
         }
         let eye = DVec3::from_array(*section.eye.get_ref());
-        let Some(directions) = directions(section, eye, &span, context) else {
+        let Some(lines) = directions(section, eye, &span, context) else {
             continue;
         };
+        let (directions, azimuths_deg) = lines.into_iter().unzip();
         let name_span = section.name.span();
         let viewpoint = Viewpoint {
             name: section.name.get_ref().clone(),
             room: 0,
             eye,
             directions,
+            azimuths_deg,
             indices,
             light_scene,
             highlights: section.highlights.as_ref().is_none_or(|wanted| *wanted.get_ref()),
@@ -61,11 +64,17 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             let (Ok(eye), Ok(azimuth_deg), Ok(tilt_deg)) = numbers else {
                 continue;
             };
+            let tilt_deg = tilt_deg.unwrap_or(0.0);
+            if !(-90.0..=90.0).contains(&tilt_deg) {
+                table.error(row, format!("tilt must lie in −90 … 90, found {tilt_deg}"), "", context);
+                continue;
+            }
             let viewpoint = Viewpoint {
                 name,
                 room: 0,
                 eye: DVec3::from_array(eye),
-                directions: vec![sight(azimuth_deg, tilt_deg.unwrap_or(0.0))],
+                directions: vec![from_azimuth_tilt(azimuth_deg, tilt_deg)],
+                azimuths_deg: vec![azimuth_deg],
                 indices: Vec::new(),
                 light_scene: None,
                 highlights: true,
@@ -85,6 +94,10 @@ fn insert(
     report: &mut dyn FnMut(&mut Context, String),
 ) {
     let name = &viewpoint.name;
+    if name.trim().is_empty() {
+        report(context, "the viewpoint's name is empty".to_owned());
+        return;
+    }
     let taken = |draft: &Draft| draft.viewpoints.iter().any(|other| other.name == *name);
     if drafts.iter().any(taken) {
         report(context, format!("a second viewpoint \"{name}\""));
@@ -118,12 +131,14 @@ pub fn indices(names: &[At<String>], context: &mut Context) -> Vec<&'static str>
     keys
 }
 
+/// Lines of sight with their azimuths in degrees: those of a sweep as it is written where nothing else sets its
+/// beginning.
 fn directions(
     section: &ViewpointSection,
     eye: DVec3,
     span: &Range<usize>,
     context: &mut Context,
-) -> Option<Vec<DVec3>> {
+) -> Option<Vec<(DVec3, f64)>> {
     let (ahead, place) = match (&section.direction, &section.target, &section.sweep) {
         (Some(_), Some(target), _) => {
             context.error(&target.span(), "give either `direction` or `target`", "");
@@ -143,8 +158,9 @@ fn directions(
         return None;
     }
     let ahead = ahead.normalize();
+    let [start_deg, _] = azimuth_tilt_deg(ahead);
     let Some(sweep) = &section.sweep else {
-        return Some(vec![ahead]);
+        return Some(vec![(ahead, start_deg)]);
     };
     let SweepSection { from, to, step } = sweep.get_ref();
     let (from, to, step) = (*from.get_ref(), *to.get_ref(), *step.get_ref());
@@ -158,15 +174,9 @@ fn directions(
         (0..=steps as u32)
             .map(|i| {
                 let angle_deg = from + f64::from(i) * step;
-                DMat3::from_rotation_z(angle_deg.to_radians()) * ahead
+                let azimuth_deg = rounded_deg(start_deg + angle_deg);
+                (DMat3::from_rotation_z(angle_deg.to_radians()) * ahead, azimuth_deg)
             })
             .collect(),
     )
-}
-
-/// Line of sight at an azimuth from +x towards +y and a tilt above the horizon.
-fn sight(azimuth_deg: f64, tilt_deg: f64) -> DVec3 {
-    let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
-    let (sin_t, cos_t) = tilt_deg.to_radians().sin_cos();
-    DVec3::new(cos_t * cos_a, cos_t * sin_a, sin_t)
 }

@@ -136,7 +136,7 @@ pub fn card_svg(view: &ViewpointOutcome, lang: Lang) -> Option<String> {
     lines.row(word(lang, Term::GlareSource), &heads);
     for (number, source) in view.sources.iter().enumerate().take(NUMBERED) {
         lines.row(
-            &format!("{}. {}", number + 1, source.label),
+            &format!("{}. {}", number + 1, words::source_label(lang, &source.label)),
             &[
                 figures(lang, source.luminance_cd_m2, 3),
                 figures(lang, source.solid_angle_sr, 3),
@@ -154,6 +154,9 @@ pub fn card_svg(view: &ViewpointOutcome, lang: Lang) -> Option<String> {
         for sentence in remedies(card, ugr, lang) {
             lines.add_folded(&sentence);
         }
+    }
+    for note in &view.notes {
+        lines.add_folded(&words::said(lang, note));
     }
     lines.add_folded(&words::said(lang, &view.convention));
     lines.add_folded(word(lang, Term::CardPicture));

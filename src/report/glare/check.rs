@@ -23,10 +23,71 @@ const SHADES: usize = 16;
 /// Decades of luminance below the highest that are told apart.
 const DECADES: f64 = 4.0;
 
-/// The picture as PNG, pixel by pixel.
+/// The picture as PNG, pixel by pixel, with the sources numbered as in the list.
 pub fn check_png(image: &Evaluated) -> Vec<u8> {
-    let [width, _] = image.glare.field.size;
-    png::encode(width, &pixels(&image.glare), &palette())
+    let size = image.glare.field.size;
+    let mut pixels = pixels(&image.glare);
+    let dot = (letter_px(size) / DIGIT[1] as f64).round() as usize;
+    for (number, centre) in centres(&image.glare).into_iter().enumerate() {
+        write_number(&mut pixels, size, number + 1, centre, dot);
+    }
+    png::encode(size[0], &pixels, &palette())
+}
+
+/// The picture without numbers.
+fn bare_png(image: &Evaluated) -> Vec<u8> {
+    png::encode(image.glare.field.size[0], &pixels(&image.glare), &palette())
+}
+
+/// Height of a number, pixels.
+fn letter_px([_, height]: [usize; 2]) -> f64 {
+    (height as f64 / 30.0).max(9.0)
+}
+
+/// Columns and rows of a digit.
+const DIGIT: [usize; 2] = [3, 5];
+/// Digits, row by row from the top, three bits each.
+const DIGITS: [[u8; DIGIT[1]]; 10] = [
+    [7, 5, 5, 5, 7],
+    [2, 6, 2, 2, 7],
+    [7, 1, 7, 4, 7],
+    [7, 1, 7, 1, 7],
+    [5, 5, 7, 1, 1],
+    [7, 4, 7, 1, 7],
+    [7, 4, 7, 5, 7],
+    [7, 1, 2, 2, 2],
+    [7, 5, 7, 5, 7],
+    [7, 5, 7, 1, 7],
+];
+
+/// Writes a number in white with a black rim about a place, in dots of so many pixels; what leaves the picture is
+/// cut off.
+fn write_number(pixels: &mut [u8], size: [usize; 2], number: usize, centre: [f64; 2], dot: usize) {
+    let digits: Vec<usize> = number.to_string().bytes().map(|digit| usize::from(digit - b'0')).collect();
+    let dots_across = digits.len() * (DIGIT[0] + 1) - 1;
+    let corner = |at: f64, dots: usize| (at - (dots * dot) as f64 / 2.0).round();
+    let start = [corner(centre[0], dots_across), corner(centre[1], DIGIT[1])];
+    let mut fill = |corner: [f64; 2], edge: f64, shade: u8| {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let within = |at: f64| at.clamp(0.0, size[axis] as f64) as usize;
+            within(corner[axis])..within(corner[axis] + edge)
+        });
+        for row in rows {
+            pixels[row * size[0] + columns.start..row * size[0] + columns.end].fill(shade);
+        }
+    };
+    let rim = (dot / 2).max(1) as f64;
+    for (shade, wider) in [(0, rim), (GREYS as u8 - 1, 0.0)] {
+        for (place, &digit) in digits.iter().enumerate() {
+            for (row, bits) in DIGITS[digit].iter().enumerate() {
+                for column in (0..DIGIT[0]).filter(|column| bits >> (DIGIT[0] - 1 - column) & 1 == 1) {
+                    let x = start[0] + (dot * (place * (DIGIT[0] + 1) + column)) as f64;
+                    let y = start[1] + (dot * row) as f64;
+                    fill([x - wider, y - wider], dot as f64 + 2.0 * wider, shade);
+                }
+            }
+        }
+    }
 }
 
 /// The picture as SVG with the sources numbered as in the list.
@@ -37,9 +98,9 @@ pub fn check_svg(image: &Evaluated) -> String {
          height=\"{height}\">\n<title>{}</title>\n<image width=\"{width}\" height=\"{height}\" \
          href=\"data:image/png;base64,{}\"/>\n",
         escape(&image.file),
-        base64(&check_png(image)),
+        base64(&bare_png(image)),
     );
-    let size = (height as f64 / 30.0).max(9.0);
+    let size = letter_px([width, height]);
     for (number, [column, row]) in centres(&image.glare).into_iter().enumerate() {
         put(
             &mut svg,
@@ -127,6 +188,28 @@ mod tests {
             [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
         {
             assert_eq!(base64(plain.as_bytes()), text);
+        }
+    }
+
+    /// Catches: numbers that are missing, mirrored, or written outside of the picture.
+    #[test]
+    fn numbers_are_written_where_their_sources_are() {
+        let size = [20, 12];
+        let mut pixels = vec![50; size[0] * size[1]];
+        write_number(&mut pixels, size, 41, [10.0, 6.0], 1);
+        let white = GREYS as u8 - 1;
+        let rows: Vec<String> = pixels
+            .chunks(size[0])
+            .map(|row| row.iter().map(|&shade| if shade == white { '#' } else { ' ' }).collect::<String>())
+            .map(|row| row.trim_end().to_owned())
+            .filter(|row| !row.is_empty())
+            .collect();
+        let left = " ".repeat(7);
+        let wanted = ["# #  #", "# # ##", "###  #", "  #  #", "  # ###"].map(|row| format!("{left}{row}"));
+        assert_eq!(rows, wanted);
+        assert!(pixels.contains(&0), "there is a rim");
+        for corner in [[0.0, 0.0], [20.0, 12.0], [-50.0, 600.0]] {
+            write_number(&mut pixels, size, 1234, corner, 3);
         }
     }
 

@@ -1,4 +1,5 @@
-//! `glare --image --format csv`: a row for every image and index; no value is an empty cell.
+//! `glare --image --format csv`: a row for every image and index; no value is an empty cell. What makes an
+//! index doubtful, and what is to be known of its image, stand in the last column.
 
 use super::super::ReportError;
 use super::Evaluated;
@@ -11,7 +12,7 @@ use crate::glare::gradient::SCALE_DEG;
 /// Where a value cannot be encoded.
 pub fn indices_csv(images: &[Evaluated]) -> Result<String, ReportError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["file", "index", "value", "unit", "reason", "convention"])?;
+    writer.write_record(["file", "index", "value", "unit", "reason", "convention", "notes"])?;
     for image in images {
         for reading in &image.glare.readings {
             let (value, reason) = match &reading.value {
@@ -19,7 +20,10 @@ pub fn indices_csv(images: &[Evaluated]) -> Result<String, ReportError> {
                 Err(undefined) => (String::new(), undefined.reason.as_str()),
             };
             let convention = image.glare.convention.as_str();
-            let row = [image.file.as_str(), reading.key, value.as_str(), reading.unit, reason, convention];
+            let notes: Vec<&str> =
+                reading.notes.iter().chain(&image.glare.notes).map(String::as_str).collect();
+            let notes = notes.join("; ");
+            let row = [image.file.as_str(), reading.key, &value, reading.unit, reason, convention, &notes];
             writer.write_record(row)?;
         }
         if let Some(found) = &image.gradient {
@@ -32,6 +36,7 @@ pub fn indices_csv(images: &[Evaluated]) -> Result<String, ReportError> {
                     UNIT.into(),
                     reason.into(),
                     format!("over {SCALE_DEG} deg"),
+                    image.glare.notes.join("; "),
                 ]
             };
             match found {

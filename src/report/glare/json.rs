@@ -68,14 +68,14 @@ struct Band {
     reason: Option<String>,
 }
 
-/// The object of one image, or the array of several.
+/// The object of one image, or an array where `many` were named, whatever became of them.
 ///
 /// # Errors
 /// Where a value cannot be encoded.
-pub fn images_json(images: &[Evaluated]) -> Result<String, ReportError> {
+pub fn images_json(images: &[Evaluated], many: bool) -> Result<String, ReportError> {
     let entries: Vec<Image> = images.iter().map(entry).collect();
     let text = match entries.as_slice() {
-        [only] => serde_json::to_string_pretty(only)?,
+        [only] if !many => serde_json::to_string_pretty(only)?,
         several => serde_json::to_string_pretty(several)?,
     };
     Ok(text + "\n")
@@ -100,7 +100,7 @@ fn entry(image: &Evaluated) -> Image<'_> {
             number: number + 1,
             right_deg,
             up_deg,
-            off_axis_deg: found.at(1.0).off_axis_deg,
+            off_axis_deg: found.at(1.0, false).off_axis_deg,
             position_index: source.position_index,
             luminance_cd_m2: found.luminance.0,
             highest_cd_m2: found.highest.0,

@@ -5,7 +5,7 @@ use super::super::ReportError;
 use super::super::number::fixed;
 use super::super::words::Lang;
 use super::super::xml::{escape, put};
-use crate::observe::map::{Mapped, approximations};
+use crate::observe::map::{MapMethod, Mapped, approximations};
 use crate::outcome::Interval;
 use crate::units::Undefined;
 
@@ -26,12 +26,14 @@ pub fn map_csv(map: &Mapped) -> Result<String, ReportError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let header = "map,light_scene,x_m,y_m,z_m,azimuth_deg,index,value,se,lo,hi,worst,undefined";
     writer.write_record(header.split(','))?;
+    // What look-ups scatter by says nothing of what the field errs by.
+    let holds = matches!(map.method, MapMethod::Unbiased(_));
     for eye in &map.eyes {
         let worst = eye.worst().map(|(number, _)| number);
         for (number, (ugr, further)) in eye.views.iter().enumerate() {
             let indices = further.iter().map(|index| (index.key.as_str(), &index.estimate));
             for (key, estimate) in std::iter::once(("UGR", ugr)).chain(indices) {
-                let [value, se, lo, hi, undefined] = cells(estimate);
+                let [value, se, lo, hi, undefined] = cells(estimate, holds);
                 writer.write_record([
                     map.name.clone(),
                     map.light_scene.clone(),
@@ -54,8 +56,13 @@ pub fn map_csv(map: &Mapped) -> Result<String, ReportError> {
     Ok(String::from_utf8(bytes).expect("only text was written"))
 }
 
-fn cells(estimate: &Result<Interval, Undefined>) -> [String; 5] {
+fn cells(estimate: &Result<Interval, Undefined>, holds: bool) -> [String; 5] {
     match estimate {
+        Ok(interval) if !holds => {
+            let mut cells = [const { String::new() }; 5];
+            cells[0] = interval.value.to_string();
+            cells
+        }
         Ok(interval) => {
             let [value, se, lo, hi] =
                 [interval.value, interval.se, interval.lo, interval.hi].map(|number| number.to_string());
@@ -108,7 +115,7 @@ pub fn map_svg(map: &Mapped) -> String {
         (low, high) = (low.min(point), high.max(point));
     }
     let scale = (WIDTH - 2.0 * MARGIN) / (high.x - low.x).max(1e-9);
-    let legend_px = 50.0 + 14.0 * approximations(map).len() as f64;
+    let legend_px = 64.0 + 14.0 * approximations(map).len() as f64;
     let height = (high.y - low.y) * scale + 2.0 * MARGIN + legend_px;
     let px = |x: f64, y: f64| [MARGIN + (x - low.x) * scale, MARGIN + (high.y - y) * scale];
     let mut svg = format!(
@@ -145,7 +152,7 @@ pub fn map_svg(map: &Mapped) -> String {
             outline.join(" ")
         ),
     );
-    legend(map, height - legend_px + 6.0, &mut svg);
+    legend(map, height - legend_px + 6.0, scale, &mut svg);
     svg.push_str("</svg>\n");
     svg
 }
@@ -176,7 +183,8 @@ fn rose(
     }
 }
 
-fn legend(map: &Mapped, y: f64, svg: &mut String) {
+/// The steps' colours, a scale bar (`scale`: px a metre), and what the map shows.
+fn legend(map: &Mapped, y: f64, scale: f64, svg: &mut String) {
     for (step, colour) in COLOURS.iter().enumerate() {
         let x = MARGIN + 70.0 * step as f64;
         let label = match step {
@@ -195,13 +203,27 @@ fn legend(map: &Mapped, y: f64, svg: &mut String) {
             ),
         );
     }
+    let bar_x = MARGIN + 70.0 * COLOURS.len() as f64 + 20.0;
+    put(
+        svg,
+        format_args!(
+            "<path d=\"M{bar_x:.1} {:.1}h{scale:.1}\" stroke=\"#222\" stroke-width=\"2\"/><text x=\"{:.1}\" y=\"{:.1}\">1 m</text>\n",
+            y + 6.0,
+            bar_x + scale + 6.0,
+            y + 10.0
+        ),
+    );
     let named = format!(
-        "{}: UGR, worst of {} directions; spokes from 10 to 30; light scene {}; initial flux",
+        "{} in {}: UGR, worst of {} directions, eyes at {} m, every {} m; spokes from 10 to 30; light scene {}; initial flux",
         map.name,
+        map.room,
         map.azimuths_deg.len(),
+        fixed(LANG, map.eyes.first().map_or(0.0, |eye| eye.position.z), 2),
+        fixed(LANG, map.spacing[0].length(), 2),
         map.light_scene
     );
-    let lines = [named.as_str(), map.convention.as_str()].into_iter().chain(approximations(map));
+    let white = "White: nothing glares (see the table), or nobody can be there: inside furniture, outside of the room.";
+    let lines = [named.as_str(), white, map.convention.as_str()].into_iter().chain(approximations(map));
     for (line, text) in lines.enumerate() {
         put(
             svg,

@@ -8,6 +8,7 @@ mod gradient;
 mod json;
 mod map;
 mod observed;
+mod observed_files;
 mod png;
 mod text;
 
@@ -16,7 +17,8 @@ pub use check::{check_png, check_svg};
 pub use csv::indices_csv;
 pub use json::images_json;
 pub use map::{map_csv, map_svg, map_text};
-pub use observed::{compared_text, observed_csv, observed_json, observed_text, tables_text};
+pub use observed::{compared_text, observed_text, tables_text};
+pub use observed_files::{observed_csv, observed_json};
 pub use text::images_text;
 
 use crate::glare::gradient::Gradient;

@@ -1,8 +1,5 @@
-//! `gershun glare PROJECT`: the observers' glare as text, CSV and JSON.
+//! `gershun glare PROJECT` for people: the observers' glare, and how conventions differ.
 
-use serde::Serialize;
-
-use super::super::ReportError;
 use super::super::number::{figures, fixed};
 use super::super::words::Lang;
 use super::super::xml::{printable, put};
@@ -39,8 +36,12 @@ pub fn observed_text(observed: &[Observed]) -> String {
                 figures(LANG, view.e_v_lx, 3),
             ),
         );
+        for note in &view.notes {
+            put(&mut text, format_args!("      note: {note}\n"));
+        }
         for index in &view.indices {
-            let unit = if index.unit == "1" { String::new() } else { format!(" {}", index.unit) };
+            let bare = index.unit == "1" || index.estimate.is_err();
+            let unit = if bare { String::new() } else { format!(" {}", index.unit) };
             let notes = index.notes.join("; ");
             let line = format!("      {:<8} {}{unit}  {notes}", index.key, estimate(&index.estimate, 3));
             put(&mut text, format_args!("{}\n", line.trim_end()));
@@ -85,6 +86,9 @@ pub fn compared_text(observed: &[Observed]) -> String {
                 &mut text,
                 format_args!("  UGR {:<22} {}\n", estimate(&other.ugr, 2), other.convention.words()),
             );
+        }
+        for note in &view.notes {
+            put(&mut text, format_args!("  note: {note}\n"));
         }
         if most > least {
             put(&mut text, format_args!("  conventions differ by up to {}\n", fixed(LANG, most - least, 2)));
@@ -194,99 +198,4 @@ fn estimate(value: &Result<Interval, Undefined>, decimals: usize) -> String {
         ),
         Err(undefined) => format!("- ({undefined})"),
     }
-}
-
-#[derive(Serialize)]
-struct View<'a> {
-    viewpoint: &'a str,
-    light_scene: &'a str,
-    eye_m: [f64; 3],
-    azimuth_deg: f64,
-    tilt_deg: f64,
-    convention: String,
-    indices: Vec<Value<'a>>,
-    background_cd_m2: f64,
-    e_v_lx: f64,
-    worst: bool,
-    /// Only where values are not unbiased.
-    #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    approximations: &'a [String],
-}
-
-#[derive(Serialize)]
-struct Value<'a> {
-    index: &'a str,
-    unit: &'a str,
-    estimate: Option<Interval>,
-    undefined: Option<&'a str>,
-}
-
-/// The values of a view: UGR first.
-fn values(view: &Observed) -> Vec<Value<'_>> {
-    fn one<'a>(index: &'a str, unit: &'a str, estimate: &'a Result<Interval, Undefined>) -> Value<'a> {
-        let undefined = estimate.as_ref().err().map(|undefined| undefined.reason.as_str());
-        Value { index, unit, estimate: estimate.as_ref().ok().copied(), undefined }
-    }
-    let further = view.indices.iter().map(|index| one(&index.key, &index.unit, &index.estimate));
-    std::iter::once(one("UGR", "1", &view.ugr)).chain(further).collect()
-}
-
-/// An array of views.
-///
-/// # Errors
-/// Where a value cannot be encoded.
-pub fn observed_json(observed: &[Observed]) -> Result<String, ReportError> {
-    let views: Vec<View> = observed
-        .iter()
-        .map(|view| View {
-            viewpoint: &view.viewpoint,
-            light_scene: &view.light_scene,
-            eye_m: view.eye.to_array(),
-            azimuth_deg: view.azimuth_deg,
-            tilt_deg: view.tilt_deg,
-            convention: view.convention.words(),
-            indices: values(view),
-            background_cd_m2: view.background_cd_m2,
-            e_v_lx: view.e_v_lx,
-            worst: view.worst,
-            approximations: &view.approximations,
-        })
-        .collect();
-    Ok(serde_json::to_string_pretty(&views)? + "\n")
-}
-
-/// A row for every view and index.
-///
-/// # Errors
-/// Where a value cannot be encoded.
-pub fn observed_csv(observed: &[Observed]) -> Result<String, ReportError> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,worst,undefined";
-    writer.write_record(header.split(','))?;
-    for view in observed {
-        for value in values(view) {
-            let of = |pick: fn(&Interval) -> f64| {
-                let picked = value.estimate.as_ref().map(pick).filter(|number| number.is_finite());
-                picked.map_or(String::new(), |number| number.to_string())
-            };
-            writer.write_record([
-                view.viewpoint.clone(),
-                view.light_scene.clone(),
-                view.azimuth_deg.to_string(),
-                view.tilt_deg.to_string(),
-                value.index.to_owned(),
-                view.convention.words(),
-                of(|estimate| estimate.value),
-                of(|estimate| estimate.se),
-                of(|estimate| estimate.lo),
-                of(|estimate| estimate.hi),
-                view.background_cd_m2.to_string(),
-                view.e_v_lx.to_string(),
-                view.worst.to_string(),
-                value.undefined.unwrap_or_default().to_owned(),
-            ])?;
-        }
-    }
-    let bytes = writer.into_inner().expect("a vector takes any bytes");
-    Ok(String::from_utf8(bytes).expect("only text was written"))
 }

@@ -80,7 +80,13 @@ impl Page<'_> {
     }
 
     fn lumens(&self, lm: f64) -> String {
-        if lm >= 100.0 { fixed(self.lang, lm, 0) } else { figures(self.lang, lm, 3) }
+        if lm >= 100.0 { fixed(self.lang, lm, 0) } else { self.three(lm) }
+    }
+
+    /// Three figures; what sums of rounded numbers leave over is 0.
+    fn three(&self, value: f64) -> String {
+        const NOTHING: f64 = 1e-9;
+        figures(self.lang, if value.abs() < NOTHING { 0.0 } else { value }, 3)
     }
 
     fn percent(&self, part: f64) -> String {
@@ -206,7 +212,7 @@ impl Page<'_> {
         let largest: Vec<String> = G_GAMMAS_DEG
             .iter()
             .zip(&outdoor.g_cd_per_klm)
-            .map(|(gamma, cd)| format!("≥ {gamma}°: {}", figures(self.lang, *cd, 3)))
+            .map(|(gamma, cd)| format!("≥ {gamma}°: {}", self.three(*cd)))
             .collect();
         format!(
             "{class} {} {}, γ {} (EN 13201-2, {})",
@@ -224,7 +230,7 @@ impl Page<'_> {
             Ok((index, class)) => format!(
                 "D{class}, I·A^-0.5 {} 85° = {} {}/{} (EN 13201-2, {unverified})",
                 self.say("at"),
-                figures(self.lang, *index, 3),
+                self.three(*index),
                 self.say("cd"),
                 self.say("m")
             ),
@@ -276,7 +282,7 @@ impl Page<'_> {
             let rotational = self.info.symmetry == Symmetry::Rotational;
             let name = if rotational { self.say("all C").into() } else { format!("C{}", row.c_deg) };
             let cell = |value: &Result<crate::units::Nits, Undefined>| {
-                let shown = value.as_ref().map_or("—".into(), |nits| figures(self.lang, nits.0, 3));
+                let shown = value.as_ref().map_or("—".into(), |nits| self.three(nits.0));
                 format!("{shown:>11}")
             };
             put(text, format_args!("  {name:>9}{}\n", row.luminances.iter().map(cell).collect::<String>()));

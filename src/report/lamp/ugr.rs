@@ -49,14 +49,13 @@ pub fn text(file: &str, flux_lm: f64, table: &UgrTable, lang: Lang) -> String {
     text
 }
 
-/// Rows rooms, columns reflectance sets crosswise then endwise; a leading column `file` only where
-/// several tables are given.
+/// Rows rooms, columns reflectance sets crosswise then endwise; a leading column `file` where `many`
+/// luminaires were named, whatever became of them.
 ///
 /// # Errors
 /// Where a table cannot be encoded.
-pub fn csv(tables: &[(String, UgrTable)]) -> Result<String, ReportError> {
+pub fn csv(tables: &[(String, UgrTable)], many: bool) -> Result<String, ReportError> {
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    let many = tables.len() > 1;
     let Some((_, first)) = tables.first() else {
         return Ok(String::new());
     };

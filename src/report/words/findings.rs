@@ -233,6 +233,18 @@ const FINDINGS: &[(&str, &str)] = &[
         "if it is a misprint, what was measured {}° away is used there, and its neighbours are interpolated towards it",
         "если это опечатка, там взято измеренное на {}° в стороне, и к нему интерполируются соседние значения",
     ),
+    ("a luminous area of {} m²", "светящая площадь {} м²"),
+    (
+        "its luminance is {} cd/m²: UGR and the illuminance near by are far too low; are the sizes in the right unit?",
+        "его яркость {} кд/м²: UGR и освещённость вблизи сильно занижены; верна ли единица размеров?",
+    ),
+    ("{} ends at {}°", "{} кончается на {}°"),
+    (
+        "there the lamp still shines with {} % of its largest intensity, and directions beyond are taken as dark: flux and illuminance are too low",
+        "там светильник светит ещё с {} % наибольшей силы света, а дальше считается тёмным: поток и освещённость занижены",
+    ),
+    ("'{}' is two numbers in a line that holds one", "«{}» – два числа в строке, где должно быть одно"),
+    ("write it without a space, 1200 and not 1 200", "пишите без пробела: 1200, а не 1 200"),
     ("{} photometry, resampled to type C in steps of {}°", "фотометрия {}, пересчитана в тип C с шагом {}°"),
     ("type A", "типа A"),
     ("type B", "типа B"),

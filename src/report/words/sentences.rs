@@ -265,6 +265,14 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "с площадью проекции более {} м², которые UGR недооценивает",
     ),
     ("no light source is visible", "источники света не видны"),
+    (
+        "all visible sources lie where the CIE 117 table has no position index, so UGR counts none",
+        "все видимые источники лежат там, где в таблице CIE 117 нет индекса позиции: UGR их не учитывает",
+    ),
+    (
+        "a source, or a part of one, lies where the CIE 117 table has no position index: UGR leaves it out, other indices take P by Levin",
+        "источник или его часть лежит там, где в таблице CIE 117 нет индекса позиции: UGR его не учитывает, прочие показатели берут P по Левину",
+    ),
     ("the background luminance is not positive", "яркость фона не положительна"),
     ("a source has no finite luminance", "у источника нет конечной яркости"),
     ("a source has no valid position index", "у источника нет допустимого индекса позиции"),
@@ -336,6 +344,19 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "gershun не рассчитывает эту величину для помещения",
     ),
     ("gershun does not compute this quantity", "gershun не рассчитывает эту величину"),
+    (
+        "luminaire \"{}\" hangs at ({}, {}, {}) more than once; their light adds up",
+        "светильник «{}» подвешен в точке ({}, {}, {}) более одного раза; световые потоки складываются",
+    ),
+    (
+        "luminaire \"{}\" has a maintenance of its own: {} of room \"{}\" does not hold for it",
+        "у светильника «{}» собственный коэффициент эксплуатации: {} помещения «{}» на него не действует",
+    ),
+    ("room \"{}\" measures {} m × {} m × {} m", "размеры помещения «{}»: {} м × {} м × {} м"),
+    (
+        "no row of the norm is given: name one in the room, its areas or [norm]",
+        "строка нормы не указана: назовите её для помещения, его областей или в [norm]",
+    ),
     ("the norm's file has no value of {} for row {}", "в файле нормы нет значения {} для строки {}"),
     (
         "the norm judges UGR at observers and the project lists no viewpoint here",

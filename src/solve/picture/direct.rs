@@ -1,37 +1,31 @@
-//! Direct light at the places a tile of pixels sees. Unshadowed illuminance is exact, or interpolated
-//! where that is as good ([`super::even`]); the visible share of each opening is sampled, once a pixel where
-//! all of it is seen or none, more often in the half-shadows that a few trial rays find.
+//! Direct light at the places a tile of pixels sees. Unshadowed illuminance is exact or as good
+//! ([`super::unshadowed`]); the visible share of each opening is sampled, once a pixel where all of it is seen
+//! or none, more often in the half-shadows that a few trial rays find, and not at all where a shaft tells that
+//! nothing stands between.
 //!
 //!   L = (ρ/π) Σ E_unshadowed · Σ V I cos/d² / Σ I cos/d²
 //!
-//! The ratio is exact where nothing shades and where everything does, and never negative.
-
-use std::f64::consts::FRAC_1_PI;
+//! The ratio is exact where nothing shades and where everything does, and never negative. Images in mirrors and
+//! panes are lamps like others; whether the plane ends before a line meets it is part of V.
 
 use glam::DVec3;
 
-use super::super::look::Way;
-use super::even::{self, Allowance};
-use super::{Counts, Picture, Seen, Sight, TILE};
-use crate::emitters::{Arrival, Emitters, Source, unshadowed};
-use crate::query::Kernel;
+use super::spots::{Group, Lines, Spot, gather};
+use super::unshadowed::{AT_HAND, Rule, unshadowed_lx};
+use super::{Counts, FAINTEST, Picture, Sight, TILE};
+use crate::emitters::{Arrival, Emitters, Glimpse, Source};
 use crate::rng::Rng;
 
 /// Most shadow rays a luminaire and pixel in half-shadows.
 const HALF_SHADOW: u32 = 8;
 /// Trial rays of a tile towards each luminaire: points of the opening.
 const TRIALS: [[f64; 2]; 5] = [[0.5, 0.5], [0.06, 0.06], [0.94, 0.06], [0.06, 0.94], [0.94, 0.94]];
-/// Nodes of the Gauss rule with two points, and of the same rule on both halves.
-const GAUSS_2: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
-const GAUSS_4: [f64; 4] =
-    [0.105_662_432_702_593_57, 0.394_337_567_297_406_4, 0.605_662_432_702_593_6, 0.894_337_567_297_406_4];
-/// Opening radii within which the finer rule is used, and the error-controlled one.
-const NEAR: f64 = 5.0;
-const AT_HAND: f64 = 1.5;
 /// A lamp with this share of a place's light gets all shadow rays in its half-shadow, others in proportion.
 const MUCH: f64 = 0.25;
 /// No half-shadow is told from fewer.
 const FEWEST: u32 = 2;
+/// Images with less than this share of the light have one ray for four pixels.
+const FAINT: f64 = 0.01;
 
 /// Points of a square, such as of an opening for the pixels of a tile: Roberts' additive sequence with the plastic number,
 /// randomly shifted, so that each point is uniform and neighbours in the sequence lie far apart.
@@ -47,175 +41,198 @@ impl Points {
     }
 }
 
-/// A place with the side on which light arrives.
-struct Spot {
-    /// Index of the pixel within the tile.
-    pixel: usize,
-    /// Triangle on which it lies.
-    triangle: u32,
-    /// Where shadow rays start.
-    origin: DVec3,
-    normal: DVec3,
-    /// Luminance in the pixel per illuminance, cd/m²/lx.
-    factor: f64,
+/// A luminaire or an image with its factor.
+#[derive(Debug)]
+pub(super) struct Lamp<'p> {
+    pub source: &'p Source,
+    pub weight: f64,
+    /// Of a rectangle that holds a level opening, m.
+    corners: [DVec3; 4],
+    /// How its unshadowed light is found, where that is quick.
+    pub rule: Option<Rule>,
 }
 
-/// A luminaire or an image with its factor and the points on its opening.
-struct Lamp<'p> {
-    source: &'p Source,
-    weight: f64,
+/// All that shine under a light scene.
+pub(super) fn lamps<'e>(emitters: &'e Emitters, weights: &[f64]) -> Vec<Lamp<'e>> {
+    let lamp = |source: &'e Source| {
+        let weight = weights[source.channel];
+        (weight > 0.0).then(|| Lamp {
+            source,
+            weight,
+            corners: emitters.corners(source),
+            rule: Rule::of(emitters, source),
+        })
+    };
+    emitters.sources.iter().filter_map(lamp).collect()
+}
+
+/// A lamp that may shine on a group.
+struct Shining<'p> {
+    lamp: &'p Lamp<'p>,
+    /// Points on its opening for this tile.
     points: Points,
+    /// Where all its light meets the plane of an image, if it does.
+    met: Option<[DVec3; 4]>,
 }
 
 /// Adds the direct light of a tile, pixel by pixel.
 pub(super) fn add(
     picture: &Picture,
     sights: &[Sight; TILE * TILE],
+    lines: Lines,
     rng: &mut Rng,
     counts: &mut Counts,
     mut put: impl FnMut(usize, f64),
 ) {
-    let scene = picture.emitters.scene;
-    let mut spots: Vec<Spot> = Vec::with_capacity(TILE * TILE);
-    let mut straight = true;
-    for (pixel, sight) in sights.iter().enumerate() {
-        for Seen { landing, share } in &sight.places {
-            let (reflectance, transmittance) = scene.bsdf(landing.triangle).diffuse();
-            straight &= landing.way == Way::Clear;
-            for (albedo, same_side) in [(reflectance, true), (transmittance, false)] {
-                if albedo > 0.0 {
-                    let normal = if same_side { landing.normal } else { -landing.normal };
-                    let origin = landing.origin(scene, same_side);
-                    let factor = share * albedo * FRAC_1_PI;
-                    spots.push(Spot { pixel, triangle: landing.triangle, origin, normal, factor });
-                }
-            }
-        }
-    }
-    if spots.is_empty() {
+    let groups = gather(picture, sights, lines);
+    if groups.is_empty() {
         return;
     }
-    let flat = is_flat(&spots);
-    let mut lamps: Vec<Lamp> = Vec::with_capacity(scene.luminaires.len());
-    for source in &picture.emitters.sources {
-        let weight = picture.weights[source.channel];
-        if !(weight > 0.0) {
-            continue;
-        }
-        let points = Points { shift: rng.uniforms() };
-        if source.mirror.is_some() {
-            add_image(picture, source, &spots, flat, points, counts, &mut |pixel, luminance| {
-                put(pixel, weight * luminance);
-            });
-        } else {
-            lamps.push(Lamp { source, weight, points });
+    let points: Vec<Points> = picture.lamps.iter().map(|_| Points { shift: rng.uniforms() }).collect();
+    for group in &groups {
+        add_group(picture, group, &points, counts, &mut put);
+    }
+}
+
+fn add_group(
+    picture: &Picture,
+    group: &Group,
+    points: &[Points],
+    counts: &mut Counts,
+    put: &mut impl FnMut(usize, f64),
+) {
+    let emitters = picture.emitters;
+    let mut shining: Vec<Shining> = Vec::with_capacity(points.len());
+    for (lamp, &points) in picture.lamps.iter().zip(points) {
+        match glimpse(emitters, lamp, group) {
+            Some(Glimpse::Nothing) => {}
+            Some(Glimpse::Some) => shining.push(Shining { lamp, points, met: None }),
+            Some(Glimpse::All(met)) => shining.push(Shining { lamp, points, met: Some(met) }),
+            None => add_image(picture, lamp, points, &group.spots, counts, put),
         }
     }
-    let unshadowed = unshadowed_lx(picture, &lamps, &spots, flat && straight);
-    let mut whole = vec![0.0; spots.len()];
+    let lamps: Vec<&Lamp> = shining.iter().map(|one| one.lamp).collect();
+    let unshadowed = unshadowed_lx(emitters, &lamps, group);
+    let mut whole = vec![0.0; group.spots.len()];
     for (lamp, lx) in lamps.iter().zip(&unshadowed) {
         whole.iter_mut().zip(lx).for_each(|(whole, lx)| *whole += lamp.weight * lx);
     }
-    for (Lamp { source, weight, points }, exact) in lamps.iter().zip(&unshadowed) {
-        if exact.iter().all(|lx| !(*lx > 0.0)) {
+    for (one, lx) in shining.iter().zip(&unshadowed) {
+        // Of all light of the group the most that the lamp may have at any place.
+        let share = |(lx, whole): (&f64, &f64)| if *lx > 0.0 { one.lamp.weight * lx / whole } else { 0.0 };
+        let most = lx.iter().zip(&whole).map(share).fold(0.0, f64::max);
+        let least = if one.lamp.source.mirror.is_some() { FAINTEST } else { 0.0 };
+        if !(most > least) {
             continue;
         }
-        let clear = flat && is_clear(picture.emitters, source, &spots);
-        let most = if clear { 0 } else { rays_wanted(picture, source, &spots, counts) };
-        for (index, (spot, lx)) in spots.iter().zip(exact).enumerate() {
-            if *lx > 0.0 && picture.emitters.lights(source, spot.triangle) {
-                let part = (weight * lx / (MUCH * whole[index])).min(1.0);
-                let rays = ((f64::from(most) * part).ceil() as u32).max(FEWEST.min(most));
-                let visible = visible_share(picture, source, spot, index as u32, rays, *points, counts);
-                put(spot.pixel, weight * spot.factor * lx * visible);
+        if is_clear(emitters, one, &group.spots, group.rectangle.is_some()) {
+            for (spot, lx) in group.spots.iter().zip(lx) {
+                if emitters.lights(one.lamp.source, spot.triangle) {
+                    put(spot.pixel, one.lamp.weight * spot.factor * lx);
+                }
             }
+            continue;
+        }
+        for range in &group.blocks {
+            let spots = &group.spots[range.clone()];
+            let block =
+                Block { spots, of: group.spots.len(), lx: &lx[range.clone()], whole: &whole[range.clone()] };
+            add_block(picture, one, &block, group.rectangle.is_some(), most, counts, put);
         }
     }
 }
 
-/// Whether nothing at all stands between a flat tile and a luminaire, so that no ray need ask.
-fn is_clear(emitters: &Emitters, source: &Source, spots: &[Spot]) -> bool {
+/// The places of a group in a square of pixels.
+struct Block<'g> {
+    spots: &'g [Spot],
+    /// Places of the whole group.
+    of: usize,
+    /// Unshadowed light of one lamp, lx.
+    lx: &'g [f64],
+    /// That of all, weighted, lx.
+    whole: &'g [f64],
+}
+
+/// Adds what of a lamp's light reaches a block.
+fn add_block(
+    picture: &Picture,
+    one: &Shining,
+    block: &Block,
+    in_plane: bool,
+    share: f64,
+    counts: &mut Counts,
+    put: &mut impl FnMut(usize, f64),
+) {
+    let emitters = picture.emitters;
+    let Lamp { source, weight, .. } = *one.lamp;
+    if !block.lx.iter().any(|lx| *lx > 0.0) {
+        return;
+    }
+    let image = source.mirror.is_some();
+    let most = if block.spots.len() < block.of && is_clear(emitters, one, block.spots, in_plane) {
+        0
+    } else if image {
+        1
+    } else {
+        rays_wanted(picture, source, block.spots, counts)
+    };
+    // Faint images: one ray for four pixels, told by the cell in which they lie.
+    let cell = |pixel: usize| pixel / TILE / 2 * TILE + pixel % TILE / 2;
+    let mut known: Vec<(usize, f64)> = Vec::new();
+    for (index, (spot, lx)) in block.spots.iter().zip(block.lx).enumerate() {
+        if !(*lx > 0.0 && emitters.lights(source, spot.triangle)) {
+            continue;
+        }
+        let before =
+            known.iter().find(|(cell_of, _)| *cell_of == cell(spot.pixel)).map(|(_, visible)| *visible);
+        let visible = before.unwrap_or_else(|| {
+            let part = (weight * lx / (MUCH * block.whole[index])).min(1.0);
+            let rays = ((f64::from(most) * part).ceil() as u32).max(FEWEST.min(most));
+            visible_share(picture, source, spot, index as u32, rays, one.points, counts)
+        });
+        if image && before.is_none() && share < FAINT {
+            known.push((cell(spot.pixel), visible));
+        }
+        put(spot.pixel, weight * spot.factor * lx * visible);
+    }
+}
+
+/// What a group sees of a lamp by way of its plane, if it is an image; `None` where light by one reflection is
+/// better sampled as a whole: at loose places, of bodies, and of openings at hand.
+fn glimpse(emitters: &Emitters, lamp: &Lamp, group: &Group) -> Option<Glimpse> {
+    let source = lamp.source;
+    let Some(mirror) = source.mirror else { return Some(Glimpse::Some) };
+    let plane = &emitters.mirrors[mirror];
+    let rectangle = group.rectangle?;
+    let opening = emitters.luminaire(source).kind.opening;
+    let size_m = rectangle[0].distance(rectangle[2]);
+    let near = source.position.distance(rectangle[0]) < AT_HAND * source.radius_m + size_m;
+    if near || !(source.is_point() || opening.is_level()) {
+        return None;
+    }
+    Some(plane.glimpse(&rectangle, &lamp.corners))
+}
+
+/// Whether nothing at all stands between places in a plane and a lamp, so that no ray need ask.
+fn is_clear(emitters: &Emitters, one: &Shining, spots: &[Spot], in_plane: bool) -> bool {
+    let source = one.lamp.source;
     let luminaire = emitters.luminaire(source);
-    let opening = luminaire.kind.opening;
-    if !(source.is_point() || opening.is_level()) {
+    if !in_plane || !(source.is_point() || luminaire.kind.opening.is_level()) {
         return false;
     }
-    let corner = |sign: [f64; 2]| {
-        let (x, y) = opening.outline().iter().fold((0.0f64, 0.0f64), |m, p| (m.0.max(p.x), m.1.max(p.y)));
-        luminaire.position + luminaire.world_from_luminaire * DVec3::new(sign[0] * x, sign[1] * y, 0.0)
-    };
-    let corners = [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]].map(corner);
     let mut origins = [DVec3::ZERO; TILE * TILE];
     for (origin, spot) in origins.iter_mut().zip(spots) {
         *origin = spot.origin;
     }
-    emitters.scene.tracer.is_clear(&origins, &corners, spots[0].normal, &luminaire.body)
+    let (origins, facing) = (&origins[..spots.len()], spots[0].normal);
+    match (source.mirror, one.met) {
+        (None, _) => emitters.scene.tracer.is_clear(origins, &one.lamp.corners, &[facing], &luminaire.body),
+        (Some(_), Some(met)) => emitters.is_clear_by_mirror(source, origins, facing, met),
+        (Some(_), None) => false,
+    }
 }
 
-/// Whether a whole tile sees one plane, each pixel once.
-fn is_flat(spots: &[Spot]) -> bool {
-    let first = &spots[0];
-    spots.len() == TILE * TILE
-        && spots.iter().enumerate().all(|(index, spot)| {
-            spot.pixel == index
-                && spot.normal.dot(first.normal) > 1.0 - 1e-9
-                && first.normal.dot(spot.origin - first.origin).abs() < 1e-6
-        })
-}
-
-/// Unshadowed illuminance of every spot by every lamp, lx. `even`: the spots are those of a plane that the
-/// eye sees straight.
-fn unshadowed_lx(picture: &Picture, lamps: &[Lamp], spots: &[Spot], even: bool) -> Vec<Vec<f64>> {
-    let exact =
-        |lamp: &Lamp, spot: &Spot| quick_unshadowed(picture.emitters, lamp.source, spot.origin, spot.normal);
-    if !even {
-        return lamps.iter().map(|lamp| spots.iter().map(|spot| exact(lamp, spot)).collect()).collect();
-    }
-    let middle: Vec<f64> = lamps.iter().map(|lamp| exact(lamp, &spots[even::MIDDLE])).collect();
-    let whole: f64 = lamps.iter().zip(&middle).map(|(lamp, lx)| lamp.weight * lx).sum();
-    let share_lx = whole / lamps.len().max(1) as f64;
-    let of_lamp = |(lamp, middle): (&Lamp, &f64)| {
-        let allowance = Allowance { anyway_lx: share_lx / lamp.weight };
-        let at = |pixel: usize| if pixel == even::MIDDLE { *middle } else { exact(lamp, &spots[pixel]) };
-        even::filled(at, allowance)
-    };
-    lamps.iter().zip(&middle).map(of_lamp).collect()
-}
-
-/// Unshadowed illuminance on a plane, lx: Lambert's formula for uniform polygons; a Gauss rule of
-/// 2 × 2 points for tabulated openings, 4 × 4 near them or where the plane cuts them, and the
-/// error-controlled one where the opening is at hand.
-fn quick_unshadowed(emitters: &Emitters, source: &Source, point: DVec3, normal: DVec3) -> f64 {
-    if source.is_behind(point) {
-        return 0.0;
-    }
-    let towards = source.position - point;
-    let distance_m = towards.length();
-    let uniform = emitters.luminaire(source).kind.distribution.lambert_flux().is_some();
-    // A rule over all pieces of a body would see jumps between them.
-    let in_pieces = emitters.luminaire(source).kind.opening.pieces() > 0;
-    if (uniform && emitters.luminaire(source).kind.opening.is_polygon())
-        || in_pieces
-        || source.is_point()
-        || distance_m < AT_HAND * source.radius_m
-    {
-        return unshadowed(emitters, source, point, &Kernel::Planar { normal });
-    }
-    let cut = normal.dot(towards).abs() < source.radius_m;
-    let nodes: &[f64] = if cut || distance_m < NEAR * source.radius_m { &GAUSS_4 } else { &GAUSS_2 };
-    let mut sum = 0.0;
-    for &u in nodes {
-        for &v in nodes {
-            let facing = |direction: DVec3| normal.dot(direction) > 0.0;
-            if let Some(arrival) = emitters.arrival_if(source, point, [u, v], facing) {
-                sum += arrival.normal_lx * normal.dot(arrival.direction);
-            }
-        }
-    }
-    sum / (nodes.len() * nodes.len()) as f64
-}
-
-/// Shadow rays per pixel, from trial rays of the spots at the tile's middle and corners.
+/// Shadow rays per pixel, from trial rays of the spots at the middle and both ends.
 fn rays_wanted(picture: &Picture, source: &Source, spots: &[Spot], counts: &mut Counts) -> u32 {
     if source.is_point() {
         return 1;
@@ -250,28 +267,30 @@ fn visible_share(
     points: Points,
     counts: &mut Counts,
 ) -> f64 {
+    let emitters = picture.emitters;
     if rays == 0 {
         return 1.0;
     }
     if rays == 1 {
         // One ray is all seen or not: how much light it would carry does not matter.
         let u = points.point(number);
-        let Some((direction, distance_m)) = picture.emitters.towards(source, spot.origin, u) else {
+        let Some((direction, distance_m)) = emitters.towards(source, spot.origin, u) else {
             return 1.0;
         };
         counts.rays += 1;
-        let arrival = Arrival { direction, distance_m, normal_lx: 0.0, weight: 1.0 };
-        return picture.emitters.passed(source, spot.origin, &arrival);
+        let arrival = Arrival { direction, distance_m, normal_lx: 0.0, weight: 1.0, mirrored: None };
+        let passed = emitters.passed(source, spot.origin, &arrival);
+        return if passed > 0.0 { passed / emitters.reflectance(source, direction) } else { 0.0 };
     }
     let (mut whole, mut passed) = (0.0, 0.0);
     for ray in 0..rays {
         let u = points.point(number * HALF_SHADOW + ray);
         let facing = |direction: DVec3| spot.normal.dot(direction) > 0.0;
-        let Some(arrival) = picture.emitters.arrival_if(source, spot.origin, u, facing) else { continue };
+        let Some(arrival) = emitters.arrival_if(source, spot.origin, u, facing) else { continue };
         let light = arrival.normal_lx * spot.normal.dot(arrival.direction);
         counts.rays += 1;
         whole += light;
-        passed += light * picture.emitters.passed(source, spot.origin, &arrival);
+        passed += light * emitters.passed(source, spot.origin, &arrival);
     }
     if whole > 0.0 { passed / whole } else { 1.0 }
 }
@@ -279,20 +298,13 @@ fn visible_share(
 /// Light by one reflection in a plane: sampled at every pixel that may see the image.
 fn add_image(
     picture: &Picture,
-    source: &Source,
-    spots: &[Spot],
-    flat: bool,
+    lamp: &Lamp,
     points: Points,
+    spots: &[Spot],
     counts: &mut Counts,
     put: &mut impl FnMut(usize, f64),
 ) {
-    let emitters = picture.emitters;
-    if flat {
-        let corners = [0, TILE - 1, TILE * TILE / 2 + TILE / 2, TILE * (TILE - 1), TILE * TILE - 1];
-        if corners.iter().all(|&index| !emitters.may_show(source, spots[index].origin)) {
-            return;
-        }
-    }
+    let (emitters, source) = (picture.emitters, lamp.source);
     for (number, spot) in spots.iter().enumerate() {
         if !emitters.may_show(source, spot.origin) {
             continue;
@@ -304,7 +316,7 @@ fn add_image(
         let passed = emitters.passed(source, spot.origin, &arrival);
         let light = arrival.normal_lx * spot.normal.dot(arrival.direction) * passed;
         if light > 0.0 {
-            put(spot.pixel, spot.factor * light);
+            put(spot.pixel, lamp.weight * spot.factor * light);
         }
     }
 }

@@ -1,17 +1,15 @@
-//! A smooth function on the pixels of a tile from few of its values: bilinear from the corners where that
-//! holds in the middle and at two edges, else quadratic from nine pixels where that holds at four others,
-//! else every value. What all corners have as 0 is taken to be 0 throughout.
+//! A smooth function on the pixels of a tile from few of its values: bilinear from the corners of a square where
+//! that holds in the middle and at two edges, else quadratic from nine pixels where that holds at four others,
+//! else by quarters, down to every value. What all corners have as 0 is taken to be 0 throughout.
 
 use super::TILE;
 
 /// Largest error, half of it as a share of the value, half as a share of all light.
 const ALLOWED: f64 = 0.004;
-/// Columns and rows of the nine pixels.
-const NODES: [usize; 3] = [0, 4, TILE - 1];
-/// Pixel in the middle.
-pub(super) const MIDDLE: usize = NODES[1] * TILE + NODES[1];
-/// Where the quadratic function is checked: farthest from its nodes.
-const CHECKED: [[usize; 2]; 4] = [[2, 2], [6, 2], [2, 6], [6, 6]];
+/// Squares of this edge are not quartered: every value is asked for.
+const SMALLEST: usize = 4;
+/// Pixel in the middle of a tile.
+pub(super) const MIDDLE: usize = TILE / 2 * TILE + TILE / 2;
 
 /// How far a lamp's light may be off.
 #[derive(Clone, Copy, Debug)]
@@ -28,45 +26,79 @@ impl Allowance {
 
 /// All values of a tile, row by row; `exact` gives that of a pixel.
 pub(super) fn filled(exact: impl Fn(usize) -> f64, allowance: Allowance) -> Vec<f64> {
-    let at = |[column, row]: [usize; 2]| exact(row * TILE + column);
-    let [first, middle, last] = NODES;
+    let mut values = vec![0.0; TILE * TILE];
+    fill(&exact, allowance, [0, 0], TILE, &mut values);
+    values
+}
+
+/// Fills the square with this first column and row.
+fn fill(
+    exact: &impl Fn(usize) -> f64,
+    allowance: Allowance,
+    corner: [usize; 2],
+    edge: usize,
+    values: &mut [f64],
+) {
+    let pixel = |[column, row]: [usize; 2]| (corner[1] + row) * TILE + corner[0] + column;
+    let at = |place: [usize; 2]| exact(pixel(place));
+    let mut put = |value: &dyn Fn([usize; 2]) -> f64| {
+        for k in 0..edge * edge {
+            let place = [k % edge, k / edge];
+            values[pixel(place)] = value(place);
+        }
+    };
+    let [first, middle, last] = nodes(edge);
     let corners = [[first, first], [last, first], [first, last], [last, last]].map(at);
-    let rest = [[middle, middle], [middle, first], [first, middle]].map(at);
-    let nothing = |values: &[f64]| values.iter().all(|value| !(*value > 0.0));
-    if nothing(&corners) && nothing(&rest) {
-        return vec![0.0; TILE * TILE];
-    }
-    let every = || (0..TILE * TILE).map(&exact).collect();
-    // A horizon runs through the tile.
-    if corners.iter().chain(&rest).any(|value| !(*value > 0.0)) {
-        return every();
-    }
-    let bilinear = |[column, row]: [usize; 2]| {
-        let [x, y] = [column, row].map(|k| k as f64 / (TILE - 1) as f64);
-        let [a, b, c, d] = corners;
-        (a + (b - a) * x) * (1.0 - y) + (c + (d - c) * x) * y
-    };
     let places = [[middle, middle], [middle, first], [first, middle]];
-    if places.iter().zip(rest).all(|(place, value)| allowance.holds(bilinear(*place), value)) {
-        return (0..TILE * TILE).map(|pixel| bilinear([pixel % TILE, pixel / TILE])).collect();
+    let rest = places.map(at);
+    let dark = corners.iter().chain(&rest).filter(|value| !(**value > 0.0)).count();
+    if dark == corners.len() + rest.len() {
+        return;
     }
-    let far = [[last, middle], [middle, last]].map(at);
-    let rows =
-        [[corners[0], rest[1], corners[1]], [rest[2], rest[0], far[0]], [corners[2], far[1], corners[3]]];
-    let quadratic = |[column, row]: [usize; 2]| {
-        let (along, down) = (shares(column), shares(row));
-        (0..3).map(|j| down[j] * (0..3).map(|i| along[i] * rows[j][i]).sum::<f64>()).sum::<f64>()
-    };
-    if CHECKED.iter().all(|&place| allowance.holds(quadratic(place), at(place))) {
-        return (0..TILE * TILE).map(|pixel| quadratic([pixel % TILE, pixel / TILE]).max(0.0)).collect();
+    // Where a horizon runs through the square, no function will do.
+    if dark == 0 {
+        let bilinear = |[column, row]: [usize; 2]| {
+            let [x, y] = [column, row].map(|k| k as f64 / last as f64);
+            let [a, b, c, d] = corners;
+            (a + (b - a) * x) * (1.0 - y) + (c + (d - c) * x) * y
+        };
+        if places.iter().zip(rest).all(|(place, value)| allowance.holds(bilinear(*place), value)) {
+            return put(&bilinear);
+        }
+        let far = [[last, middle], [middle, last]].map(at);
+        let rows =
+            [[corners[0], rest[1], corners[1]], [rest[2], rest[0], far[0]], [corners[2], far[1], corners[3]]];
+        let shares: Vec<[f64; 3]> = (0..edge).map(|k| shares(k, edge)).collect();
+        let quadratic = |[column, row]: [usize; 2]| {
+            let (along, down) = (shares[column], shares[row]);
+            (0..3).map(|j| down[j] * (0..3).map(|i| along[i] * rows[j][i]).sum::<f64>()).sum::<f64>()
+        };
+        // Farthest from the nodes.
+        let [near, far] = [edge / 4, 3 * edge / 4];
+        let checked = [[near, near], [far, near], [near, far], [far, far]];
+        if checked.iter().all(|&place| allowance.holds(quadratic(place), at(place))) {
+            return put(&|place| quadratic(place).max(0.0));
+        }
     }
-    every()
+    if edge <= SMALLEST {
+        return put(&at);
+    }
+    let half = edge / 2;
+    for quarter in 0..4 {
+        let corner = [corner[0] + quarter % 2 * half, corner[1] + quarter / 2 * half];
+        fill(exact, allowance, corner, half, values);
+    }
+}
+
+/// Columns and rows of the nine pixels.
+fn nodes(edge: usize) -> [usize; 3] {
+    [0, edge / 2, edge - 1]
 }
 
 /// Lagrange's shares of the three nodes at a column.
-fn shares(column: usize) -> [f64; 3] {
+fn shares(column: usize, edge: usize) -> [f64; 3] {
     let x = column as f64;
-    let [a, b, c] = NODES.map(|node| node as f64);
+    let [a, b, c] = nodes(edge).map(|node| node as f64);
     [
         (x - b) * (x - c) / ((a - b) * (a - c)),
         (x - a) * (x - c) / ((b - a) * (b - c)),
@@ -98,15 +130,16 @@ mod tests {
     #[test]
     fn bends_are_followed_and_slopes_are_cheap() {
         assert_eq!(worst(|x, y| 5.0 + 0.3 * x - 0.2 * y, 0.0).1, 7);
-        let bent = worst(|x, _| 5.0 + 0.1 * (x - 3.5) * (x - 3.5), 0.0);
+        let bend = |x: f64| 0.1 * (x - 3.5) * (x - 3.5);
+        let bent = worst(|x, _| 5.0 + bend(x), 0.0);
         assert!(bent.0 < 1e-12 && bent.1 == 13, "{bent:?}");
-        let bent = worst(|_, y| 5.0 + 0.1 * (y - 3.5) * (y - 3.5), 0.0);
+        let bent = worst(|_, y| 5.0 + bend(y), 0.0);
         assert!(bent.0 < 1e-12 && bent.1 == 13, "{bent:?}");
-        let saddle = worst(|x, y| 5.0 + 0.1 * ((x - 3.5) * (x - 3.5) - (y - 3.5) * (y - 3.5)), 0.0);
+        let saddle = worst(|x, y| 20.0 + bend(x) - bend(y), 0.0);
         assert!(saddle.0 < 1e-12, "{saddle:?}");
         // A lamp near a plane: E ∝ h (h² + r²)^−3/2, from tiles far wider than high to tiles far smaller.
         let mut asked = [0; 3];
-        for step in [0.01, 0.03, 0.1, 0.3, 1.0] {
+        for step in [0.003, 0.01, 0.03, 0.1, 0.3] {
             for shift in [0.0, 0.7, 2.0, 5.0] {
                 let lamp = |x: f64, y: f64| {
                     let (x, y) = (step * (x - 3.0) + shift, step * (y - 5.0));
@@ -118,6 +151,10 @@ mod tests {
             }
         }
         assert!(asked.iter().all(|count| *count > 2), "{asked:?}");
+        // A step is found, and only where it lies is every value asked for.
+        let step = |x: f64, _: f64| if x < 4.5 { 9.0 } else { 5.0 };
+        let (off, count) = worst(step, 0.0);
+        assert!(off < 1e-12 && count < 3 * TILE * TILE / 2, "{off} {count}");
         // Beside much other light a little may be further off, but no more than that light allows.
         let faint = |x: f64, y: f64| (1.0 + x * x + y * y).powf(-1.5);
         assert!(worst(faint, 1000.0).1 == 7 && worst(faint, 0.0).1 > 13);

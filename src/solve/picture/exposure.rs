@@ -1,8 +1,8 @@
 //! The field that pictures are taken from. A trial solution shows where patches should be split and how many
 //! links each needs; then it is solved anew.
 
-use super::Picture;
 use super::bends::{Plan, plan};
+use super::{Detail, Picture, direct};
 use crate::emitters::Emitters;
 use crate::field::store::{Made, StoredField};
 use crate::field::{Patches, Reached, Smooth};
@@ -68,7 +68,7 @@ pub(super) fn smoothed(scene: &Scene, patches: &Patches, reached: &[Reached], va
         }
     };
     let part = |side: usize| reached[side].middle();
-    Smooth::new(&scene.mesh, &scene.tracer, patches, values, kind, part)
+    Smooth::new(&scene.tracer, patches, values, kind, part)
 }
 
 /// Pictures of a scene from its field as it was stored.
@@ -87,8 +87,8 @@ impl Exposure<'_> {
         self.stored
     }
 
-    /// The field with a factor for each channel.
-    pub fn picture(&self, weights: &[f64]) -> Picture<'_> {
+    /// The field with a factor for each channel, for pictures of this detail.
+    pub fn picture(&self, weights: &[f64], detail: Detail) -> Picture<'_> {
         let scene = self.emitters.scene;
         let weighted = |values: &[f64]| values.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
         let patches = self.stored.field.patches();
@@ -100,20 +100,29 @@ impl Exposure<'_> {
         };
         let per_albedo =
             |side: usize, value: f64| if albedo(side) > 0.0 { value / albedo(side) } else { 0.0 };
-        let indirect: Vec<f64> = (0..patches.sides())
-            .map(|side| per_albedo(side, stored[side] - weighted(self.stored.direct.at(side))))
-            .collect();
-        let smooth = smoothed(scene, patches, &self.stored.reached, &indirect);
-        let whole = scene.has_lobes().then(|| {
-            let values: Vec<f64> = (0..stored.len()).map(|side| per_albedo(side, stored[side])).collect();
-            smooth.with(&values)
+        let indirect = (detail == Detail::Exact).then(|| {
+            let of_side =
+                |side: usize| per_albedo(side, stored[side] - weighted(self.stored.direct.at(side)));
+            let values: Vec<f64> = (0..patches.sides()).map(of_side).collect();
+            smoothed(scene, patches, &self.stored.reached, &values)
         });
+        let whole = indirect.as_ref().filter(|_| scene.has_lobes()).map(|indirect| {
+            let values: Vec<f64> = (0..stored.len()).map(|side| per_albedo(side, stored[side])).collect();
+            indirect.with(&values)
+        });
+        let shines = |index: &usize| {
+            let source = &self.emitters.sources[*index];
+            weights[source.channel] > 0.0 && !source.is_point()
+        };
         Picture {
+            detail,
             emitters: &self.emitters,
             field: &self.stored.field,
             weights: weights.to_vec(),
+            lamps: direct::lamps(&self.emitters, weights),
+            openings: (0..scene.luminaires.len()).filter(shines).collect(),
             stored,
-            indirect: smooth,
+            indirect,
             whole,
             seed: self.stored.made.seed,
         }

@@ -55,14 +55,17 @@ impl Picture<'_> {
     /// not hide its opening.
     pub(super) fn openings(&self, ray: (DVec3, DVec3), hit: Option<&Hit>, path: &Path) -> f64 {
         let scene = self.emitters.scene;
+        if path.openings.is_empty() {
+            return 0.0;
+        }
         let width = path.beam.map(|beam| beam.width(ray.1));
         let mut sum = 0.0;
-        for (index, luminaire) in scene.luminaires.iter().enumerate() {
+        for &index in path.openings {
             let source = &self.emitters.sources[index];
-            let weight = self.weights[source.channel];
-            if !(weight > 0.0) || source.is_point() || path.bodies.shut(luminaire) {
+            if path.bodies.shut(&scene.luminaires[index]) {
                 continue;
             }
+            let weight = self.weights[source.channel];
             if let (Some(beam), Some(width)) = (&path.beam, width) {
                 let towards = source.position - beam.from;
                 let along_m = towards.dot(ray.1);

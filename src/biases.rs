@@ -1,7 +1,7 @@
 //! What a run approximated or left out, with its effect: every entry of a report's list of biases
 //! that comes from solving (those of loading come with the project).
 
-use crate::emitters::Emitters;
+use crate::emitters::{Emitters, facing_pairs};
 use crate::material::{Bsdf, Lobe};
 use crate::measure::{Answers, flux};
 use crate::outcome::{Bias, Requirement};
@@ -35,6 +35,16 @@ pub(crate) fn add(
             note(
                 "Light of point sources that reaches diffuse surfaces only by two or more specular reflections, or by curved mirrors, is left out.",
                 format!("{:.3} % of the luminous flux (measured)", 100.0 * share),
+                None,
+            );
+        }
+        let shines = scene.surfaces().any(|bsdf| bsdf.emitted() > 0.0);
+        let by_two = !scene.luminaires.is_empty() && !facing_pairs(emitters).is_empty();
+        if by_two || shines {
+            note(
+                "Light of luminaires that comes by two or more mirrors, one after the other, and that of luminous surfaces by any mirror, is found by chance.",
+                "intervals may miss what is rare; at points and areas their upper ends allow for what two mirrors send there straight"
+                    .into(),
                 None,
             );
         }

@@ -14,6 +14,7 @@ mod level;
 mod mirror;
 mod seen;
 mod shining;
+mod twice;
 
 use glam::{DMat3, DVec3};
 
@@ -29,6 +30,7 @@ pub use images::planes;
 pub use mirror::{Glimpse, Mirror};
 pub use seen::{Seen, SeenPiece, Sighted, seen_by_points, seen_from, sighted_from};
 pub use shining::{Piece, Shining, shining_from, shining_in_pieces};
+pub use twice::{ByChance, facing_pairs, twice_mirrored};
 
 /// All luminaires of a scene and their images.
 #[derive(Debug)]

@@ -64,11 +64,11 @@ fn skewness(deviations: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Skewness from which an interval heeds it, in standard errors √(6/n) that it has where there is none.
-const SKEWED: f64 = 2.0;
+const SKEWED: f64 = 3.0;
 
 /// How many standard errors an interval that errs with probability `alpha` reaches below and above the mean of
 /// `n` blocks with this skewness: Student's t on both sides, and where the skewness γ is more than chance makes
-/// of even blocks (|γ| > 2 √(6/n)), at least as far as by Hall's transformation
+/// of even blocks (|γ| > 3 √(6/n)), at least as far as by Hall's transformation
 ///
 ///   T(x) = (3/a) {[1 + a (x − a/6)]^⅓ − 1},  a = γ/√n,  x = ±t      (P. Hall, J. R. Statist. Soc. B 54, 1992)
 ///

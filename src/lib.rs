@@ -209,7 +209,7 @@ fn solve_world(
                 open,
             });
         });
-        let answers = Answers::of(&sheets, &world.scene);
+        let answers = Answers { by_chance: prepared.by_chance(), ..Answers::of(&sheets, &world.scene) };
         let context = Context {
             project,
             world,

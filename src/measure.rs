@@ -9,6 +9,7 @@ pub mod intensity;
 pub mod room_ugr;
 pub mod view;
 
+use crate::emitters::ByChance;
 use crate::norm::Light;
 use crate::outcome::Interval;
 use crate::project::{LightScene, Room, World};
@@ -25,7 +26,12 @@ pub struct Answers<'s> {
     pub channels: usize,
     /// Whether there may be light that no block has found: some surface reflects or shines.
     pub may_hide: bool,
+    /// Per row, light that blocks find by chance only, with how many rays of a block do; empty: none.
+    pub by_chance: &'s [Vec<ByChance>],
 }
+
+/// A known part of the light counts as found if so many rays are expected to have come to it.
+const FOUND: f64 = 10.0;
 
 /// A gauged quantity: its value and an interval that errs with a given probability.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +72,7 @@ impl Gauged {
 impl<'s> Answers<'s> {
     /// Sheets of a scene.
     pub fn of(sheets: &'s [Sheet], scene: &Scene) -> Self {
-        Self { sheets, channels: scene.channels.len(), may_hide: scene.returns_light() }
+        Self { sheets, channels: scene.channels.len(), may_hide: scene.returns_light(), by_chance: &[] }
     }
 
     /// Number of blocks.
@@ -106,14 +112,19 @@ impl<'s> Answers<'s> {
             .collect()
     }
 
-    /// Whether all blocks agree that only direct light arrives where other light may exist: that none was found
-    /// says nothing of how much there is, so such a row has no upper end.
-    pub fn is_unseen(&self, row: usize, weights: &[f64], light: Light) -> bool {
-        let found =
-            |weights: &[f64]| self.part(row, weights, Part::Indirect).iter().any(|value| *value > 0.0);
+    /// Light of a row that blocks may have missed: what its upper end must allow for beyond the scatter of blocks.
+    /// Infinite where all blocks agree that only direct light arrives though other light may exist: that none was
+    /// found says nothing of how much there is. Else what is known to come by two mirrors, where few rays met it.
+    pub fn hidden(&self, row: usize, weights: &[f64], light: Light) -> f64 {
+        let found = || self.part(row, weights, Part::Indirect).iter().any(|value| *value > 0.0);
+        let blocks = self.blocks() as f64;
+        let missed = |one: &&ByChance| one.per_ray * blocks < FOUND;
+        let by_chance = self.by_chance.get(row).map_or(&[][..], Vec::as_slice);
         match light {
-            Light::All => self.may_hide && weights.iter().any(|weight| *weight > 0.0) && !found(weights),
-            Light::Direct => false,
+            Light::Direct => 0.0,
+            Light::All if !weights.iter().any(|weight| *weight > 0.0) => 0.0,
+            Light::All if self.may_hide && !found() => f64::INFINITY,
+            Light::All => by_chance.iter().filter(missed).map(|one| weights[one.channel] * one.lx).sum(),
         }
     }
 

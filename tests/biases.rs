@@ -31,6 +31,7 @@ fn what_a_run_leaves_out_stands_in_its_list() {
     let met = project(materials, "point = { flux = 1000 }", furniture);
     for words in [
         "two or more specular reflections",
+        "two or more mirrors",
         "Images of bright surfaces",
         "Opal surfaces",
         "Luminous surfaces",

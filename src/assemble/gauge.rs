@@ -20,6 +20,9 @@ const BRIGHT_SURFACE_CD_M2: f64 = 500.0;
 /// Said where blocks agree on what they may all have missed.
 const UNSEEN: &str = "no block has found reflected or emitted light here, though surfaces reflect or shine: there is no upper end";
 
+/// Said where light by two mirrors is known of and was seldom met.
+const MISSED: &str = "few rays have met what comes from luminaires by two mirrors, one after the other: the upper end allows for all of it";
+
 impl Context<'_> {
     /// Value and joint interval, a note, and a verdict that does not come from comparison.
     pub(super) fn gauge(
@@ -103,8 +106,13 @@ impl Context<'_> {
     /// The condition of illuminances, and whether light may be missing in them.
     fn noted(&self, blocks: &[&area::Blocks]) -> String {
         let note = self.condition().note();
-        let unseen = blocks.iter().any(|blocks| blocks.is_unseen());
-        if unseen { format!("{note}; {UNSEEN}") } else { note.into() }
+        if blocks.iter().any(|blocks| blocks.is_unseen()) {
+            format!("{note}; {UNSEEN}")
+        } else if blocks.iter().any(|blocks| blocks.is_missed()) {
+            format!("{note}; {MISSED}")
+        } else {
+            note.into()
+        }
     }
 
     /// Largest emergency intensity among the luminaires of a type that hang in a class of heights, initial.

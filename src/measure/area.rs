@@ -18,29 +18,43 @@ pub struct Blocks {
     pub index: Vec<usize>,
     /// Block values.
     pub values: Vec<Vec<f64>>,
-    /// Whether there may be light at the point that no block has found ([`Answers::is_unseen`]).
-    pub unseen: Vec<bool>,
+    /// Light at the point that blocks may have missed ([`Answers::hidden`]), in the unit of the values.
+    pub hidden: Vec<f64>,
 }
 
 impl Blocks {
     /// Whether no point's blocks have found light that may exist: what is known is then a lower end only.
     pub fn is_unseen(&self) -> bool {
-        !self.unseen.is_empty() && self.unseen.iter().all(|unseen| *unseen)
+        !self.hidden.is_empty() && self.hidden.iter().all(|hidden| hidden.is_infinite())
+    }
+
+    /// Whether blocks may have missed what is known to come by two mirrors.
+    pub fn is_missed(&self) -> bool {
+        self.hidden.iter().any(|hidden| *hidden > 0.0 && hidden.is_finite())
+    }
+
+    /// Hidden light on the mean over the points; a few points where nothing at all was found do not count.
+    fn hidden_mean(&self) -> f64 {
+        if self.is_unseen() {
+            return f64::INFINITY;
+        }
+        let known = self.hidden.iter().filter(|hidden| hidden.is_finite());
+        known.sum::<f64>() / self.hidden.len().max(1) as f64
     }
 }
 
 /// Block values of a planned quantity. A ratio is linearised about its estimate, so that means and
 /// errors are those of the ratio to first order.
 pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64], light: Light) -> Blocks {
-    let mut blocks = Blocks { index: Vec::new(), values: Vec::new(), unseen: Vec::new() };
+    let mut blocks = Blocks { index: Vec::new(), values: Vec::new(), hidden: Vec::new() };
     for (index, rows) in entry.rows.iter().enumerate() {
-        let (values, unseen) = match *rows {
+        let (values, hidden) = match *rows {
             None => continue,
             Some(Rows::One(row)) => {
-                (answers.counted(row, weights, light), answers.is_unseen(row, weights, light))
+                (answers.counted(row, weights, light), answers.hidden(row, weights, light))
             }
             Some(Rows::Ratio(above, below)) => {
-                let unseen = [above, below].iter().any(|&row| answers.is_unseen(row, weights, light));
+                let hidden = [above, below].map(|row| answers.hidden(row, weights, light));
                 let (x, y) = (answers.counted(above, weights, light), answers.counted(below, weights, light));
                 let pair = Pair::from_blocks(&x, &y);
                 let values = if pair.y > 0.0 {
@@ -49,12 +63,14 @@ pub fn blocks(answers: &Answers, entry: &PlannedQuantity, weights: &[f64], light
                 } else {
                     vec![f64::NAN; x.len()]
                 };
-                (values, unseen)
+                // Either part may be larger by what is hidden: the ratio then has no end that is known.
+                let hidden = if hidden.iter().any(|lx| *lx > 0.0) { f64::INFINITY } else { 0.0 };
+                (values, hidden)
             }
         };
         blocks.index.push(index);
         blocks.values.push(values);
-        blocks.unseen.push(unseen);
+        blocks.hidden.push(hidden);
     }
     blocks
 }
@@ -69,9 +85,9 @@ pub fn points(
 ) -> Vec<Option<PointValue>> {
     let blocks = blocks(answers, entry, weights, light);
     let mut points = vec![None; entry.rows.len()];
-    for ((index, values), unseen) in blocks.index.iter().zip(&blocks.values).zip(&blocks.unseen) {
+    for ((index, values), hidden) in blocks.index.iter().zip(&blocks.values).zip(&blocks.hidden) {
         let estimate = Estimate::from_blocks(values);
-        let (lo, hi) = opened(estimate.interval(alpha), *unseen);
+        let (lo, hi) = opened(estimate.interval(alpha), *hidden);
         let direct = match entry.rows[*index] {
             Some(Rows::One(row)) => answers.part_mean(row, weights, Part::Direct),
             _ => f64::NAN,
@@ -99,7 +115,7 @@ pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
     match statistic {
         Statistic::Mean => {
             let estimate = Estimate::from_blocks(&mean_blocks(blocks));
-            let (lo, hi) = opened(estimate.interval(alpha), blocks.is_unseen());
+            let (lo, hi) = opened(estimate.interval(alpha), blocks.hidden_mean());
             Gauged { value: Ok(estimate.value), se: estimate.se, lo, hi, place: None }
         }
         Statistic::Min => extreme(blocks, alpha, 1.0),
@@ -113,9 +129,9 @@ pub fn gauge(blocks: &Blocks, statistic: Statistic, alpha: f64) -> Gauged {
     }
 }
 
-/// An interval without its upper end where light may be unseen.
-fn opened((lo, hi): (f64, f64), unseen: bool) -> (f64, f64) {
-    (lo, if unseen { f64::INFINITY } else { hi })
+/// An interval that allows for hidden light.
+fn opened((lo, hi): (f64, f64), hidden: f64) -> (f64, f64) {
+    (lo, hi + hidden)
 }
 
 /// Mean over an area divided by the mean over its task area, by Fieller's interval.
@@ -129,12 +145,8 @@ pub fn gauge_of_task(own: &Blocks, task: &Blocks, alpha: f64) -> Gauged {
     }
     let ratio = pair.ratio();
     let (mut lo, mut hi) = pair.ratio_interval(alpha);
-    if own.is_unseen() {
-        hi = f64::INFINITY;
-    }
-    if task.is_unseen() {
-        lo = lo.min(0.0);
-    }
+    hi += own.hidden_mean() / pair.y;
+    lo *= pair.y / (pair.y + task.hidden_mean());
     Gauged { value: Ok(ratio.value), se: ratio.se, lo, hi, place: None }
 }
 
@@ -157,10 +169,10 @@ fn extreme(blocks: &Blocks, alpha: f64, sign: f64) -> Gauged {
         if signed.value < value {
             (value, se, place) = (signed.value, estimate.se, blocks.index[at]);
         }
-        // Unseen light raises the point: upwards there is no end, which for a maximum is the lower one here.
-        let is_open = |towards: f64| blocks.unseen[at] && sign * towards > 0.0;
-        lo = lo.min(if is_open(-1.0) { f64::NEG_INFINITY } else { signed.interval(alpha).0 });
-        hi = hi.min(if is_open(1.0) { f64::INFINITY } else { signed.interval(corrected).1 });
+        // Hidden light raises the point: its upper end, which for a maximum is the lower one here.
+        let [below, above] = if sign > 0.0 { [0.0, blocks.hidden[at]] } else { [blocks.hidden[at], 0.0] };
+        lo = lo.min(signed.interval(alpha).0 - below);
+        hi = hi.min(signed.interval(corrected).1 + above);
     }
     let (lo, hi) = if sign > 0.0 { (lo, hi) } else { (-hi, -lo) };
     Gauged { value: Ok(sign * value), se, lo, hi, place: Some(place) }
@@ -183,12 +195,11 @@ fn uniformity(blocks: &Blocks, alpha: f64) -> Gauged {
             least = Some((ratio.value, ratio.se, blocks.index[index]));
         }
         lo = lo.min(pair.ratio_interval(alpha).0);
-        hi = hi.min(if blocks.unseen[index] { 1.0 } else { pair.ratio_interval(corrected).1 });
+        hi = hi.min(pair.ratio_interval(corrected).1 + blocks.hidden[index] / pair.y);
     }
-    // Light that no block has found may fall on any of the points.
-    if blocks.is_unseen() {
-        lo = 0.0;
-    }
+    // Hidden light may fall on any of the points and raise the mean alone.
+    let mean_lx = mean.iter().sum::<f64>() / mean.len() as f64;
+    lo = lo.max(0.0) * mean_lx / (mean_lx + blocks.hidden_mean());
     let (value, se, place) = least.expect("an area has points here");
     // A minimum of illuminances lies between 0 and their mean; an interval says no more than that.
     Gauged { value: Ok(value), se, lo: lo.clamp(0.0, 1.0), hi: hi.clamp(0.0, 1.0), place: Some(place) }
@@ -213,6 +224,7 @@ fn diversity(blocks: &Blocks, alpha: f64) -> Gauged {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::emitters::ByChance;
     use crate::rng::Rng;
 
     /// A grid of independent noisy points about `truth`.
@@ -222,7 +234,7 @@ mod tests {
             .iter()
             .map(|t| (0..blocks).map(|_| t + sd * 12f64.sqrt() * (rng.uniform() - 0.5)).collect())
             .collect();
-        Blocks { index: (0..truth.len()).collect(), values, unseen: vec![false; truth.len()] }
+        Blocks { index: (0..truth.len()).collect(), values, hidden: vec![0.0; truth.len()] }
     }
 
     #[test]
@@ -256,7 +268,7 @@ mod tests {
     #[test]
     fn what_no_block_has_found_has_no_upper_end() {
         let known = noisy(&[3.0, 5.0], 0.0, 32, 1);
-        let unseen = Blocks { unseen: vec![true; 2], ..known.clone() };
+        let unseen = Blocks { hidden: vec![f64::INFINITY; 2], ..known.clone() };
         for statistic in [Statistic::Mean, Statistic::Min, Statistic::Max] {
             let (known, unseen) = (gauge(&known, statistic, 0.05), gauge(&unseen, statistic, 0.05));
             assert!((unseen.lo - known.lo).abs() < 1e-12 && unseen.hi.is_infinite(), "{unseen:?}");
@@ -267,9 +279,12 @@ mod tests {
         let diversity = gauge(&unseen, Statistic::Ud, 0.05);
         assert!(diversity.lo <= 0.0 && diversity.hi.is_infinite(), "{diversity:?}");
         // One point of several: the least may be higher than it seems, the mean has its own noise.
-        let one = Blocks { unseen: vec![true, false], ..known };
+        let one = Blocks { hidden: vec![f64::INFINITY, 0.0], ..known.clone() };
         assert!((gauge(&one, Statistic::Min, 0.05).hi - 5.0).abs() < 1e-12);
         assert!(gauge(&one, Statistic::Max, 0.05).hi.is_infinite());
+        // What is known but was seldom met opens the upper end by as much.
+        let missed = gauge(&Blocks { hidden: vec![4.0, 0.0], ..known }, Statistic::Mean, 0.05);
+        assert!((missed.hi - 6.0).abs() < 1e-12 && (missed.lo - 4.0).abs() < 1e-12, "{missed:?}");
     }
 
     /// Catches: darkness where light may exist taken for certain, or certain darkness for doubt.
@@ -278,15 +293,24 @@ mod tests {
         let sheet =
             |indirect: f64| crate::solve::Sheet { values: vec![4.0, 0.0, indirect], ..Default::default() };
         let sheets = |found: [f64; 2]| found.map(sheet);
-        let is_unseen = |found: [f64; 2], may_hide: bool, weight: f64, light: Light| {
+        let hidden = |found: [f64; 2], may_hide: bool, weight: f64, light: Light| {
             let sheets = sheets(found);
-            Answers { sheets: &sheets, channels: 1, may_hide }.is_unseen(0, &[weight], light)
+            let by_chance = [vec![
+                ByChance { channel: 0, lx: 7.0, per_ray: 1.0 },
+                ByChance { channel: 0, lx: 90.0, per_ray: 5.0 },
+            ]];
+            let answers = Answers { sheets: &sheets, channels: 1, may_hide, by_chance: &by_chance };
+            answers.hidden(0, &[weight], light)
         };
-        assert!(is_unseen([0.0, 0.0], true, 1.0, Light::All));
-        assert!(!is_unseen([0.0, 1e-9], true, 1.0, Light::All), "one block has found some");
-        assert!(!is_unseen([0.0, 0.0], false, 1.0, Light::All), "nothing returns light");
-        assert!(!is_unseen([0.0, 0.0], true, 0.0, Light::All), "all is switched off");
-        assert!(!is_unseen([0.0, 0.0], true, 1.0, Light::Direct), "direct light is all that counts");
+        assert!(hidden([0.0, 0.0], true, 1.0, Light::All).is_infinite());
+        // One block has found some; ten rays are expected at the second way of two mirrors, two at the first.
+        assert!((hidden([0.0, 1e-9], true, 0.5, Light::All) - 3.5).abs() < 1e-12);
+        assert!(
+            (hidden([0.0, 0.0], false, 1.0, Light::All) - 7.0).abs() < 1e-12,
+            "nothing else returns light"
+        );
+        let never = [hidden([0.0, 0.0], true, 0.0, Light::All), hidden([0.0, 0.0], true, 1.0, Light::Direct)];
+        assert!(never.iter().all(|lx| lx.abs() < 1e-12), "all is off, or direct light is all that counts");
     }
 
     #[test]

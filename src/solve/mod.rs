@@ -23,7 +23,7 @@ mod thumbnail;
 
 use glam::DVec3;
 
-use crate::emitters::{Emitters, unshadowed};
+use crate::emitters::{ByChance, Emitters, facing_pairs, twice_mirrored, unshadowed};
 use crate::field::LuminanceField;
 use crate::field::store::StoredField;
 use crate::query::{Demand, Ray};
@@ -137,6 +137,8 @@ pub struct Prepared<'s> {
     unshadowed: Vec<Vec<f64>>,
     /// First row of each receiver.
     first_rows: Vec<usize>,
+    /// Per row: what rays find by chance only; empty where no two mirrors show a luminaire.
+    by_chance: Vec<Vec<ByChance>>,
 }
 
 /// One replicate of every answer.
@@ -213,6 +215,7 @@ pub fn prepare<'s>(
         Method::Links | Method::Local | Method::Double => unshadowed_rows(&emitters, demand),
         Method::Path => Vec::new(),
     };
+    let by_chance = by_chance_rows(&emitters, demand, rays_of(method, &effort));
     let origins = match method {
         Method::Local | Method::Double => Some(chains::Origins::new(scene)),
         Method::Links | Method::Path => None,
@@ -231,6 +234,7 @@ pub fn prepare<'s>(
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,
         first_rows: demand.first_rows(),
+        by_chance,
     }
 }
 
@@ -255,6 +259,7 @@ pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed: Vec::new(),
         first_rows: Vec::new(),
+        by_chance: Vec::new(),
     }
 }
 
@@ -283,6 +288,11 @@ impl Prepared<'_> {
         self.seed
     }
 
+    /// Per row of receivers, what a block finds by chance only and how often; empty if there is no such light.
+    pub fn by_chance(&self) -> &[Vec<ByChance>] {
+        &self.by_chance
+    }
+
     /// The emitters, for what an observer sees.
     pub fn emitters(&self) -> &Emitters<'_> {
         &self.emitters
@@ -307,6 +317,33 @@ fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
                 let own = &emitters.sources[..emitters.scene.luminaires.len()];
                 own.iter().map(|source| unshadowed(emitters, source, point, kernel)).collect()
             })
+        })
+        .collect()
+}
+
+/// Rays that follow the responses of a receiver with one kernel in each block.
+fn rays_of(method: Method, effort: &Effort) -> u32 {
+    match method {
+        Method::Links => effort.gather,
+        Method::Path => effort.paths,
+        Method::Local | Method::Double => effort.local.returns,
+    }
+}
+
+/// Light by two mirrors of every receiver's rows, with how often one *block* of so many rays finds it.
+fn by_chance_rows(emitters: &Emitters, demand: &Demand, rays: u32) -> Vec<Vec<ByChance>> {
+    use rayon::prelude::*;
+    let pairs = facing_pairs(emitters);
+    if pairs.is_empty() || emitters.scene.luminaires.is_empty() {
+        return Vec::new();
+    }
+    let per_block = |one: ByChance| ByChance { per_ray: one.per_ray * f64::from(rays), ..one };
+    let receivers = demand.receivers.par_iter();
+    receivers
+        .flat_map_iter(|receiver| {
+            let point = lifted(emitters.scene, receiver.point, receiver.lift);
+            let rows = twice_mirrored(emitters, &pairs, point, &receiver.kernels);
+            rows.into_iter().map(|row| row.into_iter().map(per_block).collect())
         })
         .collect()
 }

@@ -51,6 +51,18 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "no block has found reflected or emitted light here, though surfaces reflect or shine: there is no upper end",
         "ни один блок не нашёл здесь отражённого или излучённого поверхностями света, хотя поверхности отражают или светят: верхней границы нет",
     ),
+    (
+        "few rays have met what comes from luminaires by two mirrors, one after the other: the upper end allows for all of it",
+        "свет светильников, приходящий через два зеркала подряд, встретили лишь немногие лучи: верхняя граница учитывает его целиком",
+    ),
+    (
+        "Light of luminaires that comes by two or more mirrors, one after the other, and that of luminous surfaces by any mirror, is found by chance.",
+        "Свет светильников, приходящий через два и более зеркала подряд, и свет светящих поверхностей, приходящий через зеркало, находится случайно.",
+    ),
+    (
+        "intervals may miss what is rare; at points and areas their upper ends allow for what two mirrors send there straight",
+        "интервалы могут не учесть редкое; в точках и областях верхняя граница учитывает то, что приходит прямо через два зеркала",
+    ),
     ("maintained", "эксплуатационные значения"),
     // Notes of a view.
     (

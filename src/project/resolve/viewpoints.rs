@@ -158,9 +158,8 @@ fn directions(
         return None;
     }
     let ahead = ahead.normalize();
-    let [start_deg, _] = azimuth_tilt_deg(ahead);
     let Some(sweep) = &section.sweep else {
-        return Some(vec![(ahead, start_deg)]);
+        return Some(vec![(ahead, azimuth_tilt_deg(ahead)[0])]);
     };
     let SweepSection { from, to, step } = sweep.get_ref();
     let (from, to, step) = (*from.get_ref(), *to.get_ref(), *step.get_ref());
@@ -174,8 +173,10 @@ fn directions(
         (0..=steps as u32)
             .map(|i| {
                 let angle_deg = from + f64::from(i) * step;
-                let azimuth_deg = rounded_deg(start_deg + angle_deg);
-                (DMat3::from_rotation_z(angle_deg.to_radians()) * ahead, azimuth_deg)
+                let sight = DMat3::from_rotation_z(angle_deg.to_radians()) * ahead;
+                // Only without a direction are the angles of a sweep azimuths as somebody wrote them.
+                let written = section.direction.is_none() && section.target.is_none();
+                (sight, if written { rounded_deg(angle_deg) } else { azimuth_tilt_deg(sight)[0] })
             })
             .collect(),
     )

@@ -118,9 +118,11 @@ pub fn glare(
         e_direct_lx: Some(from_luminaires.se.hypot(surfaces_se)),
         sources: found.counted.iter().map(|counted| counted.error).collect(),
     };
-    // What is skewed in the eye's light makes every index that rests on it as much less certain.
-    let widening = indirect.widening(alpha).max(from_luminaires.widening(alpha));
-    let gauge = |index: &Index| gauge(index, &sight, &error, indirect.n, [alpha, widening]);
+    let skewed = Skewed {
+        indirect: indirect.widenings(alpha),
+        direct: from_luminaires.widenings(alpha).into_iter().fold(1.0, f64::max),
+    };
+    let gauge = |index: &Index| gauge(index, &sight, &error, indirect.n, alpha, &skewed);
     let ugr_row = parse("UGR").expect("the table of indices begins with UGR");
     let indices = asked.indices.iter().filter(|key| **key != "UGR").filter_map(|key| parse(key));
     let mut notes = found.notes;
@@ -166,13 +168,39 @@ fn term(source: &GlareSource) -> f64 {
     ugr(&[*source], Nits(0.25)).map_or(0.0, |index| 10f64.powf(index / 8.0))
 }
 
-/// An index with Student's interval about it, so many times as wide.
+/// How much farther than Student's intervals reach because blocks are skewed.
+struct Skewed {
+    /// By the indirect light in the eye: below and above.
+    indirect: [f64; 2],
+    /// By what comes straight from luminaires, on either side.
+    direct: f64,
+}
+
+impl Skewed {
+    /// Factors below and above for an index: what falls as the light grows reaches the other way.
+    fn of(&self, index: &Index, sight: &Sight) -> [f64; 2] {
+        let step_lx = 1e-3 * sight.e_v_lx.abs();
+        let mut brighter = sight.clone();
+        brighter.e_v_lx += step_lx;
+        brighter.background = Nits(sight.background.0 + step_lx / PI);
+        let rises = match ((index.value)(sight), (index.value)(&brighter)) {
+            (Ok(here), Ok(there)) => there >= here,
+            _ => true,
+        };
+        let [below, above] = self.indirect;
+        let sides = if rises { [below, above] } else { [above, below] };
+        sides.map(|factor| factor.max(self.direct))
+    }
+}
+
+/// An index with Student's interval about it, wider where the eye's light is skewed.
 fn gauge(
     index: &Index,
     sight: &Sight,
     error: &SightError,
     blocks: usize,
-    [alpha, widening]: [f64; 2],
+    alpha: f64,
+    skewed: &Skewed,
 ) -> Gauged {
     let value = (index.value)(sight);
     let spread =
@@ -180,8 +208,9 @@ fn gauge(
     match (value, spread) {
         (Err(reason), _) | (Ok(_), Err(reason)) => Gauged::undefined(reason),
         (Ok(value), Ok(Spread { se, degrees })) => {
-            let half = if se > 0.0 { widening * quantile(1.0 - 0.5 * alpha, degrees) * se } else { 0.0 };
-            Gauged { value: Ok(value), se, lo: value - half, hi: value + half, place: None }
+            let half = if se > 0.0 { quantile(1.0 - 0.5 * alpha, degrees) * se } else { 0.0 };
+            let [below, above] = skewed.of(index, sight).map(|factor| factor * half);
+            Gauged { value: Ok(value), se, lo: value - below, hi: value + above, place: None }
         }
     }
 }

@@ -91,11 +91,8 @@ fn row_of(project: &Project, world: &World, spec: &AreaSpec) -> Option<String> {
     spec.row.clone().or(task).or_else(|| world.rooms[spec.room].row.clone()).or_else(|| norm.row.clone())
 }
 
-/// Points across a strip round another area, at least.
-const ACROSS_STRIP: f64 = 2.0;
-
 /// The rule for an area that is no rectangle. What is narrower than its outline counts by its width, as a
-/// corridor does, whatever bends it has; a strip round another area has two points across.
+/// corridor does, whatever bends it has; a strip round another area has points along its middle.
 fn rule_of(spec: &AreaSpec, corners: &[DVec3], normal: DVec3, holes: &[Vec<DVec2>]) -> GridRule {
     if spec.rule != GridRule::En {
         return spec.rule;
@@ -110,11 +107,7 @@ fn rule_of(spec: &AreaSpec, corners: &[DVec3], normal: DVec3, holes: &[Vec<DVec2
     let size = flat.iter().copied().reduce(DVec2::max).unwrap_or_default() - low;
     let inner = |length_m: f64| length_m - 2.0 * spec.border_m;
     let width_m = inner(grid::width(&flat, holes));
-    let step_m = if holes.is_empty() {
-        grid::spacing_m(width_m, inner(size.max_element()))
-    } else {
-        width_m / ACROSS_STRIP
-    };
+    let step_m = if holes.is_empty() { grid::spacing_m(width_m, inner(size.max_element())) } else { width_m };
     if step_m > 0.0 { GridRule::EnAtMost(step_m) } else { spec.rule }
 }
 

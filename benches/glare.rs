@@ -12,7 +12,7 @@ use std::time::Instant;
 use gershun::observe::Sheets;
 use gershun::observe::map::{USUAL, field_effort, mend_for, swift_eyes};
 use gershun::observe::stored::observe_stored;
-use gershun::project::{LoadOptions, Project, load};
+use gershun::project::Project;
 use gershun::query::Demand;
 use gershun::solve::picture::expose;
 use gershun::solve::{Method, prepare};
@@ -22,14 +22,7 @@ const MAP: &str =
     "\n[[glare_map]]\nrect = { origin = [0, 0, 1.2], u = [8, 0, 0], v = [0, 5, 0] }\nstep = 0.2\n";
 
 fn main() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for entry in std::fs::read_dir("scenes/office").expect("the office").flatten() {
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
-    }
-    let path = folder.path().join("project.toml");
-    let text = std::fs::read_to_string(&path).expect("text") + MAP;
-    std::fs::write(&path, text).expect("written");
-    let project = load(folder.path(), &LoadOptions::default()).expect("loads");
+    let project = common::office_with(MAP);
     map(&project);
     viewpoint(project);
 }

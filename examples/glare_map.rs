@@ -14,7 +14,7 @@ use gershun::emitters::{Emitters, Sighted, seen_by_points, shining_in_pieces};
 use gershun::observe::map::{
     MappedEye, USUAL, field_effort, mend_for, swift_eyes, unbiased_at, unbiased_eyes,
 };
-use gershun::project::{LoadOptions, Project, load};
+use gershun::project::Project;
 use gershun::query::Demand;
 use gershun::solve::{Effort, GlanceEffort, Method, prepare};
 use glam::DVec3;
@@ -23,14 +23,7 @@ const MAP: &str = "\n[[glare_map]]\nrect = { origin = [0, 0, 1.2], u = [8, 0, 0]
 
 fn main() {
     let reference_blocks = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(128);
-    let folder = tempfile::tempdir().expect("a folder");
-    for entry in std::fs::read_dir("scenes/office").expect("the office").flatten() {
-        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
-    }
-    let path = folder.path().join("project.toml");
-    let text = std::fs::read_to_string(&path).expect("text") + MAP;
-    std::fs::write(&path, text).expect("written");
-    let project = load(folder.path(), &LoadOptions::default()).expect("loads");
+    let project = common::office_with(MAP);
     let world = &project.worlds[0];
     let mut reference = reference(&project, reference_blocks);
     let (demand, map) = (Demand::default(), &world.glare_maps[0]);

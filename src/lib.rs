@@ -209,7 +209,8 @@ fn solve_world(
                 open,
             });
         });
-        let answers = Answers { by_chance: prepared.by_chance(), ..Answers::of(&sheets, &world.scene) };
+        let (by_chance, may_hide) = (prepared.by_chance(), prepared.may_hide());
+        let answers = Answers { may_hide, by_chance, ..Answers::of(&sheets, &world.scene) };
         let context = Context {
             project,
             world,

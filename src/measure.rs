@@ -24,8 +24,8 @@ pub struct Answers<'s> {
     pub sheets: &'s [Sheet],
     /// Channels of the scene.
     pub channels: usize,
-    /// Whether there may be light that no block has found: some surface reflects or shines.
-    pub may_hide: bool,
+    /// Per row of receivers, whether there may be light that no block has found; empty: that is not asked.
+    pub may_hide: &'s [bool],
     /// Per row, light that blocks find by chance only, with how many rays of a block do; empty: none.
     pub by_chance: &'s [Vec<ByChance>],
 }
@@ -72,7 +72,7 @@ impl Gauged {
 impl<'s> Answers<'s> {
     /// Sheets of a scene.
     pub fn of(sheets: &'s [Sheet], scene: &Scene) -> Self {
-        Self { sheets, channels: scene.channels.len(), may_hide: scene.returns_light(), by_chance: &[] }
+        Self { sheets, channels: scene.channels.len(), may_hide: &[], by_chance: &[] }
     }
 
     /// Number of blocks.
@@ -123,7 +123,7 @@ impl<'s> Answers<'s> {
         match light {
             Light::Direct => 0.0,
             Light::All if !weights.iter().any(|weight| *weight > 0.0) => 0.0,
-            Light::All if self.may_hide && !found() => f64::INFINITY,
+            Light::All if self.may_hide.get(row).is_some_and(|may| *may) && !found() => f64::INFINITY,
             Light::All => by_chance.iter().filter(missed).map(|one| weights[one.channel] * one.lx).sum(),
         }
     }

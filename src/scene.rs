@@ -197,11 +197,14 @@ impl Scene {
         self.mesh.surfaces.iter().map(|surface| &self.materials[surface.material].bsdf)
     }
 
-    /// Whether some surface scatters or shines, so that there is light besides what luminaires send straight or by
-    /// mirrors.
-    pub fn returns_light(&self) -> bool {
+    /// Triangles from which light may come beside what luminaires send straight: those that scatter or shine, and
+    /// mirrors and panes where there are such. None in a scene that is black.
+    pub fn returning(&self) -> Vec<u32> {
         let returns = |bsdf: &Bsdf| bsdf.emitted() > 0.0 || bsdf.albedo(1.0) > 0.0 || bsdf.albedo(0.05) > 0.0;
-        self.surfaces().any(|bsdf| bsdf.specular(1.0).is_none() && returns(bsdf))
+        if !self.surfaces().any(|bsdf| bsdf.specular(1.0).is_none() && returns(bsdf)) {
+            return Vec::new();
+        }
+        (0..self.mesh.triangles.len() as u32).filter(|&triangle| returns(self.bsdf(triangle))).collect()
     }
 
     /// Whether a surface reflects in a glossy lobe.

@@ -554,3 +554,13 @@ fn narrow_areas_have_points_across_whatever_their_outline() {
         assert!(deep.len() >= 20 && deep.iter().all(|d| (0.1..0.4).contains(d)), "{deep:?}");
     }
 }
+
+/// Catches: a lit ground with nothing over it, from which no light can come back, that is never decided.
+#[test]
+fn ground_under_a_black_sky_hides_no_light_from_planes_that_look_up() {
+    let ground = "[scene]\nbox = { size = [9, 9, 9], floor = 0.3, walls = 0, ceiling = 0 }\n\
+                  [luminaires.A]\npoint = { flux = 1000 }\n[[place]]\nluminaire = \"A\"\nat = [4.5, 4.5, 8]\n"
+        .to_owned()
+        + &spot("P", [4.5, 4.5, 0.5], r#""E_h""#);
+    exact("ground", point(&few(&ground), "P", "E_h"), 1000.0 / (4.0 * PI) / 56.25);
+}

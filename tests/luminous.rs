@@ -12,7 +12,7 @@ use gershun::material::{Bsdf, Material};
 use gershun::outcome::{Outcome, Verdict};
 use gershun::query::{Demand, Kernel, Receiver};
 use gershun::scene::Scene;
-use gershun::solve::{Effort, Method};
+use gershun::solve::{Effort, Method, prepare};
 use glam::DVec3;
 
 /// A hall of 20 × 10 × 4 m whose east wall shines; with a partition of 3.2 m at x = 5 if it is asked for.
@@ -140,4 +140,21 @@ fn light_by_two_mirrors_is_not_denied() {
         dark.value,
         dark.hi_joint
     );
+}
+
+/// Catches: light that may exist denied, or claimed where no surface that returns any is before the receiver.
+#[test]
+fn what_may_hide_is_known_from_where_surfaces_lie() {
+    let up = planar(DVec3::new(3.0, 5.0, 0.5), DVec3::Z);
+    let aside = planar(DVec3::new(3.0, 5.0, 0.5), DVec3::X);
+    let around =
+        Receiver { kernels: vec![Kernel::Cylindrical { axis: DVec3::Z }, Kernel::Spherical], ..up.clone() };
+    let demand = Demand { receivers: vec![up, aside, around], ..Demand::default() };
+    let rows =
+        |scene: &Scene| prepare(scene, &demand, Method::Links, Effort::default(), 1).may_hide().to_vec();
+    let ground = hall(0.0, [0.3, 0.0], false);
+    assert_eq!(rows(&ground), [false, true, true, true], "the ground alone");
+    assert_eq!(rows(&hall(0.0, [0.0, 0.3], false)), [true; 4], "walls");
+    assert_eq!(rows(&hall(1.0, [0.0, 0.0], false)), [true; 4], "a wall that shines");
+    assert_eq!(rows(&hall(0.0, [0.0, 0.0], false)), [false; 4], "nothing");
 }

@@ -299,7 +299,9 @@ mod tests {
                 ByChance { channel: 0, lx: 7.0, per_ray: 1.0 },
                 ByChance { channel: 0, lx: 90.0, per_ray: 5.0 },
             ]];
-            let answers = Answers { sheets: &sheets, channels: 1, may_hide, by_chance: &by_chance };
+            let may_hide = [may_hide];
+            let answers =
+                Answers { sheets: &sheets, channels: 1, may_hide: &may_hide, by_chance: &by_chance };
             answers.hidden(0, &[weight], light)
         };
         assert!(hidden([0.0, 0.0], true, 1.0, Light::All).is_infinite());

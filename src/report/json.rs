@@ -121,12 +121,25 @@ struct AreaRow<'a> {
 }
 
 #[derive(Serialize)]
-struct IndexRow<'a> {
-    index: &'a str,
-    unit: &'a str,
-    estimate: Option<Interval>,
-    undefined: Option<&'a str>,
-    notes: &'a [String],
+pub(super) struct IndexRow<'a> {
+    pub index: &'a str,
+    pub unit: &'a str,
+    pub estimate: Option<Interval>,
+    pub undefined: Option<&'a str>,
+    pub notes: &'a [String],
+}
+
+impl<'a> IndexRow<'a> {
+    /// A figure of a view, or why there is none.
+    pub fn new(
+        index: &'a str,
+        unit: &'a str,
+        estimate: &'a Result<Interval, Undefined>,
+        notes: &'a [String],
+    ) -> Self {
+        let undefined = estimate.as_ref().err().map(|undefined| undefined.reason.as_str());
+        Self { index, unit, estimate: estimate.as_ref().ok().copied(), undefined, notes }
+    }
 }
 
 #[derive(Serialize)]
@@ -299,13 +312,7 @@ fn viewpoint(view: &ViewpointOutcome) -> ViewpointRow<'_> {
         indices: view
             .indices
             .iter()
-            .map(|index| IndexRow {
-                index: &index.key,
-                unit: &index.unit,
-                estimate: index.estimate.as_ref().ok().copied(),
-                undefined: reason(&index.estimate),
-                notes: &index.notes,
-            })
+            .map(|index| IndexRow::new(&index.key, &index.unit, &index.estimate, &index.notes))
             .collect(),
         convention: &view.convention,
         background_cd_m2: view.background_cd_m2,

@@ -113,10 +113,13 @@ fn interval(lang: Lang, requirement: &Requirement) -> String {
     if requirement.verdict == Verdict::Declared {
         return "—".into();
     }
+    let text = |x| number::value(lang, requirement.quantity, requirement.statistic, x);
+    if lo.is_finite() && hi > f64::MAX {
+        return format!("{}…∞", text(lo));
+    }
     if !(lo.is_finite() && hi.is_finite()) {
         return word(lang, Term::NoInterval).into();
     }
-    let text = |x| number::value(lang, requirement.quantity, requirement.statistic, x);
     format!("{}…{}", text(lo), text(hi))
 }
 

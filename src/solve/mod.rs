@@ -22,11 +22,12 @@ mod sweep;
 mod thumbnail;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::emitters::{ByChance, Emitters, facing_pairs, twice_mirrored, unshadowed};
 use crate::field::LuminanceField;
 use crate::field::store::StoredField;
-use crate::query::{Demand, Ray};
+use crate::query::{Demand, Kernel, Ray};
 use crate::rng::Rng;
 use crate::scene::Scene;
 
@@ -139,6 +140,8 @@ pub struct Prepared<'s> {
     first_rows: Vec<usize>,
     /// Per row: what rays find by chance only; empty where no two mirrors show a luminaire.
     by_chance: Vec<Vec<ByChance>>,
+    /// Per row of receivers: whether anything from which light may come lies where the kernel responds.
+    may_hide: Vec<bool>,
 }
 
 /// One replicate of every answer.
@@ -235,6 +238,7 @@ pub fn prepare<'s>(
         unshadowed,
         first_rows: demand.first_rows(),
         by_chance,
+        may_hide: may_hide_rows(scene, demand),
     }
 }
 
@@ -260,6 +264,7 @@ pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
         unshadowed: Vec::new(),
         first_rows: Vec::new(),
         by_chance: Vec::new(),
+        may_hide: Vec::new(),
     }
 }
 
@@ -293,6 +298,11 @@ impl Prepared<'_> {
         &self.by_chance
     }
 
+    /// Per row of receivers, whether there may be light that no luminaire sends straight.
+    pub fn may_hide(&self) -> &[bool] {
+        &self.may_hide
+    }
+
     /// The emitters, for what an observer sees.
     pub fn emitters(&self) -> &Emitters<'_> {
         &self.emitters
@@ -304,9 +314,31 @@ impl Prepared<'_> {
     }
 }
 
+/// Farther than this before a plane, m, lies what a receiver on it may see.
+const BEFORE_M: f64 = 1e-6;
+
+/// For every kernel row whether a surface that may send it light lies where it responds: ground under the open sky
+/// sends none to planes that look up.
+fn may_hide_rows(scene: &Scene, demand: &Demand) -> Vec<bool> {
+    let returning = scene.returning();
+    let before = |point: DVec3, kernel: &Kernel| match *kernel {
+        Kernel::Planar { normal } => returning.iter().any(|&triangle| {
+            let corners = scene.mesh.corners(triangle as usize);
+            corners.iter().any(|corner| (*corner - point).dot(normal) > BEFORE_M)
+        }),
+        Kernel::Cylindrical { .. }
+        | Kernel::Semicylindrical { .. }
+        | Kernel::Hemispherical { .. }
+        | Kernel::Spherical => !returning.is_empty(),
+    };
+    let receivers = demand.receivers.par_iter();
+    receivers
+        .flat_map_iter(|receiver| receiver.kernels.iter().map(|kernel| before(receiver.point, kernel)))
+        .collect()
+}
+
 /// Unshadowed illuminance of every kernel row from every luminaire (images excluded).
 fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
-    use rayon::prelude::*;
     demand
         .receivers
         .par_iter()
@@ -332,7 +364,6 @@ fn rays_of(method: Method, effort: &Effort) -> u32 {
 
 /// Light by two mirrors of every receiver's rows, with how often one *block* of so many rays finds it.
 fn by_chance_rows(emitters: &Emitters, demand: &Demand, rays: u32) -> Vec<Vec<ByChance>> {
-    use rayon::prelude::*;
     let pairs = facing_pairs(emitters);
     if pairs.is_empty() || emitters.scene.luminaires.is_empty() {
         return Vec::new();

@@ -8,6 +8,7 @@ use gershun::geometry::mesh::Mesh;
 use gershun::luminaire::{Luminaire, LuminaireType, Maintenance, orientation};
 use gershun::material::{Bsdf, Lobe, Material, Pane, Phong, PhongPaper, Ward};
 use gershun::photometry::{IntensityDistribution, Opening};
+use gershun::project::{LoadOptions, Project, load};
 use gershun::query::{Demand, Kernel, Receiver};
 use gershun::scene::Scene;
 use gershun::solve::{Effort, Method, PARTS, Sheet, answer, prepare};
@@ -109,6 +110,19 @@ pub fn cpu_seconds() -> f64 {
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
     let ticks = |index: usize| fields.get(index).and_then(|f| f.parse::<f64>().ok()).unwrap_or(0.0);
     (ticks(11) + ticks(12)) / 100.0
+}
+
+/// The project of the example office, with more text at its end.
+pub fn office_with(more: &str) -> Project {
+    let folder = tempfile::tempdir().expect("a folder");
+    let office = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/office");
+    for entry in std::fs::read_dir(office).expect("the office").flatten() {
+        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
+    }
+    let path = folder.path().join("project.toml");
+    let text = std::fs::read_to_string(&path).expect("text") + more;
+    std::fs::write(&path, text).expect("written");
+    load(folder.path(), &LoadOptions::default()).expect("loads")
 }
 
 /// A room with furniture, a mirror, a glazed screen, an opal screen, two kinds of lamps.

@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 use super::super::ReportError;
+use super::super::json::IndexRow;
 use crate::observe::Observed;
 use crate::observe::map::{MapMethod, Mapped, approximations};
 use crate::outcome::{GlareSourceOutcome, IndexOutcome, Interval};
@@ -21,7 +22,7 @@ struct View<'a> {
     azimuth_deg: f64,
     tilt_deg: f64,
     convention: String,
-    indices: Vec<Value<'a>>,
+    indices: Vec<IndexRow<'a>>,
     background_cd_m2: Option<f64>,
     e_v_lx: Option<f64>,
     worst: bool,
@@ -31,15 +32,6 @@ struct View<'a> {
     /// Only where values are not unbiased.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     approximations: Vec<&'a str>,
-}
-
-#[derive(Serialize)]
-struct Value<'a> {
-    index: &'a str,
-    unit: &'a str,
-    estimate: Option<Interval>,
-    undefined: Option<&'a str>,
-    notes: &'a [String],
 }
 
 #[derive(Serialize)]
@@ -70,13 +62,9 @@ fn values<'a>(
     ugr: &'a Result<Interval, Undefined>,
     notes: &'a [String],
     further: &'a [IndexOutcome],
-) -> Vec<Value<'a>> {
-    let one = |index, unit, estimate: &'a Result<Interval, Undefined>, notes| {
-        let undefined = estimate.as_ref().err().map(|undefined| undefined.reason.as_str());
-        Value { index, unit, estimate: estimate.as_ref().ok().copied(), undefined, notes }
-    };
-    let further = further.iter().map(|index| one(&index.key, &index.unit, &index.estimate, &index.notes));
-    std::iter::once(one("UGR", "1", ugr, notes)).chain(further).collect()
+) -> Vec<IndexRow<'a>> {
+    let of = |index: &'a IndexOutcome| IndexRow::new(&index.key, &index.unit, &index.estimate, &index.notes);
+    std::iter::once(IndexRow::new("UGR", "1", ugr, notes)).chain(further.iter().map(of)).collect()
 }
 
 /// All views: of the observers, then of the maps.

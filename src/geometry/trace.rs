@@ -55,6 +55,8 @@ impl std::fmt::Debug for Tracer {
     }
 }
 
+/// How far rays are lifted off surfaces, as a share of the scene's size.
+const LIFT: f64 = 1e-9;
 const OPAQUE: u32 = u32::MAX;
 /// Barycentric weight below which a pane counts as met on an edge: far above rounding, far below size.
 const ON_EDGE: f64 = 1e-12;
@@ -124,7 +126,7 @@ impl Tracer {
                 .collect(),
             panes,
             centre,
-            offset_m: size_m * 1e-9,
+            offset_m: size_m * LIFT,
             simd: simd == Simd::Detect && avx2(),
             stack_need,
         }
@@ -138,6 +140,11 @@ impl Tracer {
     /// Surface of a triangle.
     pub fn surface(&self, triangle: u32) -> u32 {
         self.surface_of[triangle as usize]
+    }
+
+    /// Diagonal of the scene's box, m.
+    pub fn size_m(&self) -> f64 {
+        self.offset_m / LIFT
     }
 
     /// How far a ray's origin is lifted off a surface along its normal, m: 1e-9 of the scene's size.

@@ -442,9 +442,11 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
     }
 }
 
+/// Luminance stored at a place, per channel; none in a gap.
 fn stored<'p>(prepared: &'p Prepared, landing: &Landing) -> &'p [f64] {
     let field = field(prepared);
-    field.at(field.patches().side_at(landing.triangle, landing.barycentric, landing.front))
+    let side = field.patches().side_at(landing.triangle, landing.barycentric, landing.front);
+    if prepared.gaps.hold(prepared.scene, landing, side) { &[] } else { field.at(side) }
 }
 
 fn field<'p>(prepared: &'p Prepared) -> &'p LuminanceField {

@@ -9,6 +9,7 @@
 use rayon::prelude::*;
 
 use super::aims::Aims;
+use super::gaps::Gaps;
 use super::look::{Landing, Sight, Way, look};
 use crate::emitters::Emitters;
 use crate::field::Patches;
@@ -43,6 +44,8 @@ pub(super) struct Cavities<'a> {
     pub patches: &'a Patches,
     /// Luminous surfaces, aimed at by their light.
     pub glow: Option<&'a Aims>,
+    /// What stands or lies right before a side.
+    pub gaps: &'a Gaps,
     /// Per patch side, whether any sample of its direct light saw a luminaire or a luminous surface.
     pub lit: &'a [bool],
     /// Per patch side; empty until it is known.
@@ -80,13 +83,16 @@ impl Cavities<'_> {
         }
         match lit {
             0 => Cover::Dark,
-            PROBES => Cover::Clear,
+            PROBES if !self.gaps.beside(side) => Cover::Clear,
             _ => Cover::Partial,
         }
     }
 
-    /// Whether light comes to a place of `side`.
+    /// Whether light comes to a place of `side` that is not in a gap.
     pub(super) fn is_reached(&self, place: &Landing, side: usize, rng: &mut Rng, sight: &mut Sight) -> bool {
+        if self.gaps.hold(self.emitters.scene, place, side) {
+            return false;
+        }
         for _ in 0..WALKS {
             if let Some(reached) = self.walk(*place, rng, sight) {
                 return reached;
@@ -252,14 +258,21 @@ mod tests {
                         emitters: &emitters,
                         patches: &patches,
                         glow: None,
+                        gaps: &Gaps::default(),
                         lit: &[],
                         covers: vec![],
                     };
                     (0..4).any(|k| cavities.sees_light(&at, &mut Rng::new(1, 0, (4 * side + k) as u64)))
                 })
                 .collect();
-            let mut cavities =
-                Cavities { emitters: &emitters, patches: &patches, glow: None, lit: &lit, covers: vec![] };
+            let mut cavities = Cavities {
+                emitters: &emitters,
+                patches: &patches,
+                glow: None,
+                gaps: &Gaps::default(),
+                lit: &lit,
+                covers: vec![],
+            };
             cavities.probe(&[], [1, 0]);
             let (mut rng, mut sight) = (Rng::new(1, 2, 3), Sight::new(1));
             let (mut wrong, mut tried, mut covered, mut hovered) = (0, 0, 0, 0);
@@ -320,8 +333,14 @@ mod tests {
                     glow.is_some_and(|glow| sees_glow(glow, &emitters, &patches, &at, &mut rng))
                 })
                 .collect();
-            let mut cavities =
-                Cavities { emitters: &emitters, patches: &patches, glow, lit: &lit, covers: vec![] };
+            let mut cavities = Cavities {
+                emitters: &emitters,
+                patches: &patches,
+                glow,
+                gaps: &Gaps::default(),
+                lit: &lit,
+                covers: vec![],
+            };
             cavities.probe(&[], [1, 0]);
             // Inner sides below the tile: those of the floor.
             let floor = (0..patches.sides()).filter(|&side| {

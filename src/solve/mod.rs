@@ -9,6 +9,7 @@ mod covered;
 mod double;
 pub mod far_field;
 mod flux;
+mod gaps;
 mod glance;
 mod highlights;
 mod lobe;
@@ -32,6 +33,7 @@ use crate::rng::Rng;
 use crate::scene::Scene;
 
 use beacons::Beacons;
+use gaps::Gaps;
 
 pub use glance::{GlanceEffort, Mended, as_stored, glances, mend};
 pub use local::{LocalEffort, LocalKernel, SeenForm};
@@ -128,6 +130,8 @@ pub struct Prepared<'s> {
     highlights: highlights::Highlights,
     /// The stored field; empty for the path tracer.
     field: Option<LuminanceField>,
+    /// Where something lies right before a patch: there the field counts as dark.
+    gaps: Gaps,
     /// Bright patches of the field.
     beacons: Beacons,
     /// What chains start from; only for local estimation.
@@ -207,9 +211,9 @@ pub fn prepare<'s>(
 ) -> Prepared<'s> {
     let emitters = Emitters::new(scene);
     let highlights = highlights::Highlights::new(&emitters);
-    let field = match method {
-        Method::Links => Some(prepare::field(&emitters, &highlights, &effort, seed)),
-        Method::Path | Method::Local | Method::Double => None,
+    let (field, gaps) = match method {
+        Method::Links => Some(prepare::field(&emitters, &highlights, &effort, seed)).unzip(),
+        Method::Path | Method::Local | Method::Double => (None, None),
     };
     let beacons = field.as_ref().map_or_else(Beacons::default, |field| {
         Beacons::new(scene, field.patches(), |side| field.at(side).iter().sum())
@@ -232,6 +236,7 @@ pub fn prepare<'s>(
         method,
         seed,
         field,
+        gaps: gaps.unwrap_or_default(),
         beacons,
         origins,
         bound_m2: local::bound_m2(scene, &effort.local),
@@ -258,6 +263,7 @@ pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
         method: Method::Links,
         seed: stored.made.seed,
         field: Some(stored.field),
+        gaps: Gaps::default(),
         beacons: Beacons::default(),
         origins: None,
         bound_m2: local::bound_m2(scene, &effort.local),

@@ -11,6 +11,7 @@ use super::Effort;
 use super::aims::{AIMED, Aims};
 use super::beacons::{Evenness, shining};
 use super::covered::{Cavities, Cover, place, sees_glow};
+use super::gaps::Gaps;
 use super::highlights::{self, Highlights};
 use super::look::{Landing, Sight, Way, add_direct, add_emission, look};
 use super::refine::refine;
@@ -49,17 +50,19 @@ pub(super) struct Parts {
     pub reached: Vec<Reached>,
     /// How much of it is covered, per patch side.
     pub covers: Vec<Cover>,
+    /// Where something lies right before a patch.
+    pub gaps: Gaps,
     /// Of the sum over channels, from the scatter of links, per patch side; for a trial only.
     pub variances: Vec<f64>,
 }
 
-/// Builds the field from stream 0 of `seed`.
+/// Builds the field from stream 0 of `seed`; with it the gaps in which it counts as dark.
 pub(super) fn field(
     emitters: &Emitters,
     highlights: &Highlights,
     effort: &Effort,
     seed: u64,
-) -> LuminanceField {
+) -> (LuminanceField, Gaps) {
     let patches = mesh(emitters, effort);
     let making = Making {
         purpose: Purpose::Control,
@@ -69,7 +72,8 @@ pub(super) fn field(
         stream: 0,
         covers: &[],
     };
-    parts(emitters, highlights, patches, &making).field
+    let Parts { field, gaps, .. } = parts(emitters, highlights, patches, &making);
+    (field, gaps)
 }
 
 /// What a field is built for.
@@ -147,8 +151,15 @@ pub(super) fn parts(
     // Links of answers' fields are aimed where few patches make most of the light, or where any shines of itself.
     let aimed = purpose.is_seen() || glow.is_some() || Evenness::of(&patches, sent).is_uneven;
     let aims = if aimed { Aims::new(&patches, sent) } else { None };
-    let mut cavities =
-        Cavities { emitters, patches: &patches, glow: glow.as_ref(), lit: &lit, covers: Vec::new() };
+    let gaps = Gaps::new(scene, &patches, [seed, stream]);
+    let mut cavities = Cavities {
+        emitters,
+        patches: &patches,
+        glow: glow.as_ref(),
+        gaps: &gaps,
+        lit: &lit,
+        covers: Vec::new(),
+    };
     cavities.probe(making.covers, [seed, stream]);
     let links = Links { cavities: &cavities, highlights, aims: aims.as_ref(), making };
     let collected: Vec<Collected> =
@@ -166,7 +177,7 @@ pub(super) fn parts(
         Purpose::Control | Purpose::Shown => Vec::new(),
     };
     let reached = collected.into_iter().map(|entry| entry.reached).collect();
-    Parts { field, direct, reached, covers, variances }
+    Parts { field, direct, reached, covers, gaps, variances }
 }
 
 fn first_light(
@@ -301,6 +312,9 @@ fn collect(common: &Links, side: usize, FirstLight { mut direct, mut rng, .. }: 
                 share = aims.share(end, origin.distance(landing.point), cos_there, cosine);
             }
             add_emission(scene, landing.triangle, &mut met, share * landing.weight);
+            if cavities.gaps.hold(scene, landing, end) {
+                continue;
+            }
             links.push(end as u32);
             if aims.is_some() {
                 shares.push(share);

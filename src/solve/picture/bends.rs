@@ -35,7 +35,7 @@ pub(super) struct Plan {
 
 /// Splits patches by the solution of a trial of so many links on them.
 pub(super) fn plan(scene: &Scene, trial: Parts, trial_links: u32) -> Plan {
-    let Parts { field, direct, reached, covers, variances } = trial;
+    let Parts { field, direct, reached, covers, variances, .. } = trial;
     let mut patches = field.patches().clone();
     let sum = |values: &[f64]| values.iter().sum::<f64>();
     let albedo = |side: usize| {

@@ -45,8 +45,13 @@ impl Gaps {
                         return None;
                     }
                     let hit = scene.tracer.closest(at.origin(scene, true), at.normal, &[])?;
-                    keeps_light_away(scene.bsdf(hit.triangle))
-                        .then(|| [side, patches.side_at(hit.triangle, hit.barycentric, hit.front)])
+                    let lid = scene.bsdf(hit.triangle);
+                    // Mirrors and panes have no patches.
+                    let other = || match lid.specular(1.0) {
+                        Some(_) => side,
+                        None => patches.side_at(hit.triangle, hit.barycentric, hit.front),
+                    };
+                    keeps_light_away(lid).then(|| [side, other()])
                 })
             })
             .collect();
@@ -93,17 +98,19 @@ mod tests {
         mesh.add_quad(if is_up { up } else { down }, surface);
     }
 
-    /// A desk of 2 × 1 m on which lie, a millimetre above it, a book and a luminous plate, and 1 cm above it a shelf; `scale`
-    /// changes all lengths.
+    /// A desk of 2 × 1 m on which lie, a millimetre above it, a book, a mirror and a luminous plate, and 1 cm above it a
+    /// shelf; `scale` changes all lengths.
     fn desk(scale: f64) -> Scene {
         let mut mesh = Mesh::default();
         let materials = vec![
             Material { name: "wood".into(), bsdf: Bsdf::Lambert { reflectance: 0.5 } },
             Material { name: "plate".into(), bsdf: Bsdf::Emitter { luminance_cd_m2: 9.0, reflectance: 0.9 } },
+            Material { name: "mirror".into(), bsdf: Bsdf::Mirror { reflectance: 0.9 } },
         ];
         for (name, material, box_m, z, is_up) in [
             ("desk", 0, [0.0, 2.0, 0.0, 1.0], 0.0, true),
             ("book", 0, [0.2, 0.5, 0.2, 0.4], 0.001, false),
+            ("mirror", 2, [0.6, 1.0, 0.2, 0.4], 0.001, false),
             ("plate", 1, [0.2, 0.3, 0.7, 0.8], 0.001, false),
             ("shelf", 0, [1.4, 1.9, 0.2, 0.8], 0.01, false),
         ] {
@@ -113,8 +120,8 @@ mod tests {
         Scene::new(mesh, materials, Vec::new()).expect("a scene")
     }
 
-    /// Catches: a gap missed because what covers it is smaller than a patch, a shelf or what shines taken for
-    /// a lid, a small model that is all gaps.
+    /// Catches: a gap missed because what covers it is smaller than a patch, a patch of a mirror asked for, a shelf
+    /// or what shines taken for a lid, a small model that is all gaps.
     #[test]
     fn under_a_book_there_is_a_gap_and_under_a_shelf_there_is_none() {
         for scale in [1.0, 0.01] {
@@ -129,7 +136,8 @@ mod tests {
                     let p = at.point / scale;
                     let inside = |lo: f64, hi: f64, x: f64| (lo..hi).contains(&x);
                     let between = p.z < 0.002 && (p.z < 1e-6) == (at.normal.z > 0.0);
-                    let expected = between && inside(0.2, 0.5, p.x) && inside(0.2, 0.4, p.y);
+                    let covered = inside(0.2, 0.5, p.x) || inside(0.6, 1.0, p.x);
+                    let expected = between && covered && inside(0.2, 0.4, p.y);
                     held += i32::from(expected);
                     wrong += i32::from(gaps.hold(&scene, &at, side) != expected);
                 }

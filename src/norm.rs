@@ -28,6 +28,7 @@ pub fn bundled() -> &'static [(&'static str, &'static str)] {
         ("en-12193-2018", include_str!("../standards/en-12193-2018.toml")),
         ("sp-52.13330.2016", include_str!("../standards/sp-52.13330.2016.toml")),
         ("sanpin-1.2.3685-21", include_str!("../standards/sanpin-1.2.3685-21.toml")),
+        ("en-1838-2024", include_str!("../standards/en-1838-2024.toml")),
         ("en-1838-2013", include_str!("../standards/en-1838-2013.toml")),
         ("en-17037-2018", include_str!("../standards/en-17037-2018.toml")),
     ]

@@ -111,7 +111,7 @@ fn values(
     shr: f64,
     notes: &mut Vec<String>,
 ) -> Result<(TableValue, TableValue), Undefined> {
-    let size = rectangle(&room.footprint)
+    let Rectangle { size, axes } = rectangle(&room.footprint)
         .ok_or_else(|| Undefined::because("table method not applicable: the room is not rectangular"))?;
     let placed: Vec<_> = room
         .luminaires
@@ -136,16 +136,17 @@ fn values(
         ));
     }
     let table = tables.of(kind, shr)?;
-    // Length axis of the luminaires in plan: along x, along y, or mixed.
-    let along =
-        |axis: usize| placed.iter().all(|l| l.world_from_luminaire.x_axis.to_array()[axis].abs() > 0.999);
+    // Length axis of the luminaires in plan: along the room's first edge, its second, or mixed.
+    let along = |axis: usize| {
+        placed.iter().all(|l| axes[axis].dot(l.world_from_luminaire.x_axis.truncate()).abs() > 0.999)
+    };
     let reflectances = room.reflectances;
     let mut look = |across: f64, depth: f64| {
         let found = table.room(across / height_m, depth / height_m, reflectances)?;
         notes.extend(found.notes.iter().cloned());
         Ok::<_, Undefined>(found)
     };
-    // Looking along y sees the width x, and the other way round.
+    // x and y are the room's own: looking along y sees the width x, and the other way round.
     let (facing_y, facing_x) = (look(size.x, size.y)?, look(size.y, size.x)?);
     notes.sort();
     notes.dedup();
@@ -160,17 +161,59 @@ fn values(
     }
 }
 
-/// Extent of an axis-aligned rectangular footprint; `None` for any other.
-fn rectangle(footprint: &[DVec2]) -> Option<DVec2> {
-    let (lo, hi) =
-        footprint.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
-    let area: f64 = 0.5
-        * footprint
-            .iter()
-            .enumerate()
-            .map(|(index, a)| a.perp_dot(footprint[(index + 1) % footprint.len()]))
-            .sum::<f64>();
+/// A rectangle in plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rectangle {
+    /// Lengths along its axes, m.
+    size: DVec2,
+    /// Unit vectors along its edges, the first nearest to x.
+    axes: [DVec2; 2],
+}
+
+/// A footprint that is a rectangle, turned however it may be; `None` for any other.
+fn rectangle(footprint: &[DVec2]) -> Option<Rectangle> {
+    let edges =
+        || (0..footprint.len()).map(|index| footprint[(index + 1) % footprint.len()] - footprint[index]);
+    let longest = edges().max_by(|a, b| a.length().total_cmp(&b.length()))?.try_normalize()?;
+    let first = if longest.x.abs() >= longest.y.abs() { longest } else { longest.perp() };
+    let axes = [first, first.perp()];
+    let (lo, hi) = footprint.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| {
+        let own = DVec2::new(p.dot(axes[0]), p.dot(axes[1]));
+        (lo.min(own), hi.max(own))
+    });
+    let doubled: f64 = edges().zip(footprint).map(|(edge, corner)| corner.perp_dot(*corner + edge)).sum();
     let size = hi - lo;
-    (size.min_element() > 0.0 && (area.abs() - size.x * size.y).abs() < 1e-6 * size.x * size.y)
-        .then_some(size)
+    let whole = size.x * size.y;
+    (size.min_element() > 0.0 && (0.5 * doubled.abs() - whole).abs() < 1e-6 * whole)
+        .then_some(Rectangle { size, axes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: a turned room that is none, an L or a trapezium that is one, edges that are not the room's.
+    #[test]
+    fn a_rectangle_is_one_however_it_is_turned() {
+        let corners = [[0.0, 0.0], [6.0, 0.0], [6.0, 2.5], [6.0, 4.0], [0.0, 4.0]].map(DVec2::from_array);
+        for degrees in [0.0f64, 30.0, 44.0, 90.0, 137.0, -120.0] {
+            let turn = DVec2::from_angle(degrees.to_radians());
+            let turned: Vec<DVec2> =
+                corners.iter().map(|p| turn.rotate(*p) + DVec2::new(3.0, -7.0)).collect();
+            for footprint in [turned.clone(), turned.iter().rev().copied().collect()] {
+                let Rectangle { size, axes } = rectangle(&footprint).expect("a rectangle");
+                let along = axes[0].dot(turn.rotate(DVec2::X)).abs();
+                let expected = if along > 0.5 { DVec2::new(6.0, 4.0) } else { DVec2::new(4.0, 6.0) };
+                assert!((size - expected).length() < 1e-9, "{degrees}°: {size}");
+                assert!(
+                    (along - along.round()).abs() < 1e-12 && axes[0].x.abs() > 0.7,
+                    "{degrees}°: {axes:?}"
+                );
+            }
+        }
+        let l = [[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [3.0, 4.0], [3.0, 2.0], [0.0, 2.0]];
+        assert_eq!(rectangle(&l.map(DVec2::from_array)), None);
+        let trapezium = [[0.0, 0.0], [6.0, 0.0], [5.0, 4.0], [0.0, 4.0]];
+        assert_eq!(rectangle(&trapezium.map(DVec2::from_array)), None);
+    }
 }

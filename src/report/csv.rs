@@ -181,6 +181,24 @@ fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportErro
     let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,room,undefined";
     let mut table = Table::new(dialect, &header.split(',').collect::<Vec<_>>())?;
     for room in &outcome.rooms {
+        for kind in &room.ugr_table {
+            for (sight, ugr) in [("crosswise", &kind.crosswise), ("endwise", &kind.endwise)] {
+                let (value, undefined) = match ugr {
+                    Ok(ugr) => (Cell::Number(*ugr), ""),
+                    Err(undefined) => (Cell::Empty, undefined.reason.as_str()),
+                };
+                let mut cells = [const { Cell::Empty }; 14];
+                let (name, method) =
+                    (format!("{}, {sight}", kind.kind), format!("table method CIE 190, SHR {}", kind.shr));
+                cells[0] = Cell::Text(&name);
+                cells[4] = Cell::Text("UGR_table");
+                cells[5] = Cell::Text(&method);
+                cells[6] = value;
+                cells[12] = Cell::Text(&room.name);
+                cells[13] = Cell::Text(undefined);
+                table.row(&cells)?;
+            }
+        }
         for view in &room.viewpoints {
             let ([value, se, lo, hi], undefined) = match &view.ugr {
                 Ok(ugr) => (interval(*ugr), ""),

@@ -156,6 +156,14 @@ fn maintenance(lang: Lang, kind: &TypeOutcome) -> String {
 
 fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
     let mut rows = Vec::new();
+    // What all values have in common is said once, below the table.
+    let mut states: Vec<String> = Vec::new();
+    for field in room.areas.iter().flat_map(|area| &area.fields) {
+        let state = words::condition(lang, field.condition);
+        if !states.iter().any(|known| *known == state) {
+            states.push(state.to_string());
+        }
+    }
     for area in &room.areas {
         let of =
             area.of.as_ref().map_or(String::new(), |of| format!(" {} {}", word(lang, Term::Of), escape(of)));
@@ -186,14 +194,17 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
                 statistic_of(subject, statistic)
                     .map_or("—".to_owned(), |value| number::value(lang, field.quantity, statistic, value))
             };
-            let state = words::condition(lang, field.condition);
+            let state = match &states[..] {
+                [_] => String::new(),
+                _ => format!("<br/><span class=\"note\">{}</span>", words::condition(lang, field.condition)),
+            };
             let unit = number::unit(lang, field.quantity, Statistic::Mean);
             let unit = unit.trim_start_matches('\u{a0}');
             let label = symbol(&words::symbol(lang, field.quantity, Statistic::Value));
             rows.push(vec![
                 if index == 0 { name.clone() } else { String::new() },
                 if unit.is_empty() { label } else { format!("{label}, {unit}") },
-                format!("{}<br/><span class=\"note\">{state}</span>", escape(&field.light_scene)),
+                format!("{}{state}", escape(&field.light_scene)),
                 text(Statistic::Mean),
                 text(Statistic::Min),
                 text(Statistic::Max),
@@ -211,7 +222,11 @@ fn areas(outcome: &Outcome, room: &RoomOutcome, lang: Lang) -> String {
         Term::Ugr0,
     ]
     .map(|term| word(lang, term));
-    grid("awlrrrr", &head, &rows)
+    let mut table = grid("awlrrrr", &head, &rows);
+    if let [state] = &states[..] {
+        put(&mut table, format_args!("<p class=\"note\">{state}</p>\n"));
+    }
+    table
 }
 
 fn flux(balance: &FluxBalance, lang: Lang) -> String {

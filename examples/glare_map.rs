@@ -66,6 +66,7 @@ fn fine_reference(project: &Project, eyes: &[DVec3]) -> Vec<MappedEye> {
     let world = &project.worlds[0];
     let effort = Effort { gather: 256, walks: 64, links: 128, ..field_effort(&world.scene) };
     let see = |emitters: &Emitters, eye: DVec3| Sighted {
+        eye,
         luminaires: seen_by_points(emitters, eye, 77, FINE_POINTS),
         surfaces: shining_in_pieces(emitters, eye, 77, 1e-3),
         glints: None,

@@ -15,7 +15,8 @@ use std::sync::atomic::AtomicBool;
 use gershun::grid::GridRule;
 use gershun::outcome::{Interval, Outcome, Value, Verdict};
 use gershun::project::{
-    AreaKind, AreaShape, AreaSpec, CustomRequirement, CustomSubject, LoadOptions, Project, Viewpoint, load,
+    AreaKind, AreaShape, AreaSpec, CustomRequirement, CustomSubject, LoadOptions, Project, Task, Viewpoint,
+    load,
 };
 use gershun::quantity::{Quantity, Statistic};
 use gershun::solve::Effort;
@@ -130,6 +131,8 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         indices: Vec::new(),
         light_scene: None,
         highlights: true,
+        task: Task::default(),
+        written: None,
     }];
     Ok(project)
 }

@@ -77,6 +77,15 @@ pub struct Glare {
     /// Age of the observer, years; veiling luminance asks for it [default: 25]
     #[arg(long, value_name = "YEARS", value_parser = positive)]
     pub age: Option<f64>,
+    /// Share of the ceiling that shines, above 0 and up to 1; GGR asks for it
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub ceiling_coverage: Option<f64>,
+    /// Mean horizontal illuminance of an outdoor area in lx and its reflectance; GR asks for them
+    #[arg(long, value_name = "LX,RHO", value_parser = ground)]
+    pub ground: Option<[f64; 2]>,
+    /// Mean luminance of the road or lane, cd/m²; f_TI asks for it
+    #[arg(long, value_name = "L", value_parser = positive)]
+    pub road: Option<f64>,
     /// What is printed
     #[arg(long, value_enum, default_value_t = GlareFormat::Human)]
     pub format: GlareFormat,
@@ -107,6 +116,9 @@ impl Glare {
             ("--band", self.band.is_some()),
             ("--experimental", self.experimental),
             ("--age", self.age.is_some()),
+            ("--ceiling-coverage", self.ceiling_coverage.is_some()),
+            ("--ground", self.ground.is_some()),
+            ("--road", self.road.is_some()),
             ("--check", self.check.is_some()),
         ];
         let of_projects = [
@@ -165,6 +177,17 @@ pub enum GlareFormat {
 fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("\"{text}\" is not a number"))?;
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err("it must be positive".into()) }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value = positive(text)?;
+    if value <= 1.0 { Ok(value) } else { Err("it is a share, at most 1".into()) }
+}
+
+fn ground(text: &str) -> Result<[f64; 2], String> {
+    let example = || format!("\"{text}\" is not illuminance,reflectance, for example 200,0.25");
+    let (lx, reflectance) = text.split_once(',').ok_or_else(example)?;
+    Ok([positive(lx.trim()).map_err(|_| example())?, share(reflectance.trim()).map_err(|_| example())?])
 }
 
 fn peak(text: &str) -> Result<Peak, String> {

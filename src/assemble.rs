@@ -182,7 +182,9 @@ impl Context<'_> {
             });
             let views = (0..planned.views.len()).all(|index| {
                 let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha, &[]).ugr;
-                ugr.value.is_err() || ugr.se <= 3.5 * r
+                let weights = self.initial(planned.views[index].light_scene, entry);
+                let zones = self.zones(room, index, &weights);
+                (ugr.value.is_err() || ugr.se <= 3.5 * r) && zones.is_none_or(|zones| zones.is_within(r))
             });
             areas && views
         })

@@ -6,9 +6,10 @@ use std::path::Path;
 use gershun::glare::detect::{Search, Threshold};
 use gershun::glare::field::Cone;
 use gershun::glare::gradient::{SCALE_DEG, gradient};
+use gershun::glare::index::Reading;
 use gershun::glare::of_image::{Options, glare_of_image};
 use gershun::glare::position_index::PositionModel;
-use gershun::glare::source::{DgpForm, Given};
+use gershun::glare::source::{DgpForm, Given, Ground};
 use gershun::image::{LuminanceImage, asked_view, read};
 use gershun::observe::map::{MapMethod, Mapped, approximations, maps};
 use gershun::observe::stored::observe_stored;
@@ -56,8 +57,9 @@ pub fn run(glare: &Glare) -> u8 {
     let evaluate = |path: &std::path::PathBuf| -> Result<report::Evaluated, String> {
         let image = image(path, glare.view.as_deref())?;
         let options = options(glare, &image).map_err(|error| format!("{}: {error}", path.display()))?;
-        let found = glare_of_image(&image, mask.as_ref(), &options)
+        let mut found = glare_of_image(&image, mask.as_ref(), &options)
             .map_err(|undefined| format!("{}: {undefined}{}", path.display(), hint(&image)))?;
+        name_options(glare, &mut found.readings);
         let gradient = glare.experimental.then(|| gradient(&image, SCALE_DEG));
         Ok(report::Evaluated { file: path.display().to_string(), glare: found, gradient })
     };
@@ -85,6 +87,21 @@ pub fn run(glare: &Glare) -> u8 {
     match text {
         Ok(text) => worst.max(tell(glare, &text)),
         Err(error) => complain(&error.to_string()),
+    }
+}
+
+/// What an index asks for and no image shows is given on the command line: where it was not, its reason says by what.
+fn name_options(glare: &Glare, readings: &mut [Reading]) {
+    let lacking = [
+        ("GGR", "--ceiling-coverage SHARE", glare.ceiling_coverage.is_none()),
+        ("GR", "--ground LX,RHO", glare.ground.is_none()),
+        ("f_TI", "--road L", glare.road.is_none()),
+    ];
+    for reading in readings {
+        let option = lacking.iter().find(|(key, _, is_lacking)| *key == reading.key && *is_lacking);
+        if let (Some((_, option, _)), Err(undefined)) = (option, &mut reading.value) {
+            undefined.reason = format!("{} (option {option})", undefined.reason);
+        }
     }
 }
 
@@ -256,6 +273,9 @@ fn options(glare: &Glare, image: &LuminanceImage) -> Result<Options, String> {
         given: Given {
             age_years: glare.age.unwrap_or(usual.given.age_years),
             low_light: glare.low_light,
+            ceiling_coverage: glare.ceiling_coverage,
+            ground: glare.ground.map(|[mean_lx, reflectance]| Ground { mean_lx, reflectance }),
+            road: glare.road.map(Nits),
             dgp: match glare.dgp {
                 Some(DgpChoice::Evalglare) | None => DgpForm::Evalglare,
                 Some(DgpChoice::Published) => DgpForm::Published,

@@ -117,7 +117,8 @@ pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
 /// ratios and probabilities to 0.01, UGR and other indices of glare to 0.1.
 pub fn printed(value: f64, quantity: Quantity, statistic: Statistic) -> f64 {
     let to = |step: f64| ((value / step) + 0.5 + 1e-12).floor() * step;
-    if statistic.is_ratio() || quantity == Quantity::Modelling || quantity.is_probability() {
+    let is_ratio = statistic.is_ratio() || quantity.is_luminance_ratio();
+    if is_ratio || quantity == Quantity::Modelling || quantity.is_probability() {
         to(0.01)
     } else if matches!(quantity, Quantity::Ugr | Quantity::OfView { unit: "1" | "%", .. }) {
         to(0.1)

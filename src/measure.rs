@@ -7,7 +7,9 @@ pub mod flux;
 pub mod glare_sources;
 pub mod intensity;
 pub mod room_ugr;
+mod stray;
 pub mod view;
+pub mod zones;
 
 use crate::emitters::ByChance;
 use crate::norm::Light;

@@ -14,9 +14,11 @@ use crate::glare::of_image::{Options, glare_of_image};
 use crate::glare::ugr::ugr;
 use crate::image::{Projection, View};
 use crate::measure::glare_sources::{Convention, SourceModel};
+use crate::measure::zones::ZoneLight;
 use crate::measure::{Answers, room_ugr, view, weights};
 use crate::outcome::{GlareSourceOutcome, IndexOutcome, Interval, UgrTableOutcome, ViewpointOutcome};
-use crate::project::{Project, World};
+use crate::plan::{BEHIND, PlannedTask, TaskZones, concerns_task};
+use crate::project::{Project, Room, Viewpoint, World};
 use crate::query::{Demand, Kernel, Receiver};
 use crate::solve::{Effort, Method, Prepared, Sheet, answer, prepare, thumbnail};
 use crate::units::Undefined;
@@ -123,10 +125,12 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
         lift: DVec3::ZERO,
         kernels: viewpoint.directions.iter().map(|&normal| Kernel::Planar { normal }).collect(),
     });
-    let demand = Demand { receivers: receivers.collect(), rays: Vec::new(), flux: false };
+    let mut demand = Demand { receivers: receivers.collect(), rays: Vec::new(), flux: false };
     if demand.receivers.is_empty() {
         return Vec::new();
     }
+    let tasks: Vec<Vec<Option<PlannedTask>>> =
+        world.viewpoints.iter().map(|viewpoint| ask_tasks(viewpoint, &mut demand)).collect();
     let prepared = prepare(&world.scene, &demand, Method::Links, Effort::default(), seed);
     let sheets: Vec<Sheet> =
         (0..blocks as u64).into_par_iter().map(|block| answer(&prepared, block)).collect();
@@ -135,9 +139,27 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
     let light = |index: usize, number: usize, weights: &[f64], _: &Sighted| {
         view::EyeLight::of_row(&answers, first_rows[index] + number, weights)
     };
-    let one = |index: usize| of_viewpoint(project, world, index, &prepared, conventions, Sheets::All, light);
+    let zones = |index: usize, number: usize, weights: &[f64]| {
+        let planned = tasks[index][number].as_ref().ok_or(BEHIND)?;
+        Ok(ZoneLight::of_rows(&answers, planned, weights))
+    };
+    let one =
+        |index: usize| of_viewpoint(project, world, index, &prepared, conventions, Sheets::All, light, zones);
     let each: Vec<Vec<Observed>> = (0..world.viewpoints.len()).into_par_iter().map(one).collect();
     each.into_iter().flatten().collect()
+}
+
+/// Adds receivers for the zones about a viewpoint's task, one entry for each direction; none where no index asks for
+/// them, or the task lies behind the eye.
+fn ask_tasks(viewpoint: &Viewpoint, demand: &mut Demand) -> Vec<Option<PlannedTask>> {
+    let wanted = concerns_task(&viewpoint.indices);
+    let one = |&gaze: &DVec3| {
+        let about = TaskZones::of(&viewpoint.task, viewpoint.eye, gaze).filter(|_| wanted)?;
+        let first = demand.rows();
+        demand.receivers.extend(about.receivers(viewpoint.eye));
+        Some(PlannedTask { about, rows: [first, first + 1, first + 2] })
+    };
+    viewpoint.directions.iter().map(one).collect()
 }
 
 /// Which views get a sheet with a card, whose picture takes most of the time.
@@ -149,7 +171,9 @@ pub enum Sheets {
     None,
 }
 
-/// A viewpoint in all its directions; `light` is that in the eye for a viewpoint and the number of a direction.
+/// A viewpoint in all its directions; `light` is that in the eye for a viewpoint and the number of a direction,
+/// `zones` that of the zones about its task.
+#[allow(clippy::too_many_arguments, reason = "two callers, one for each way to find the light")]
 fn of_viewpoint(
     project: &Project,
     world: &World,
@@ -158,6 +182,7 @@ fn of_viewpoint(
     conventions: &[Convention],
     sheets: Sheets,
     light: impl Fn(usize, usize, &[f64], &Sighted) -> view::EyeLight,
+    zones: impl Fn(usize, usize, &[f64]) -> Result<ZoneLight, &'static str>,
 ) -> Vec<Observed> {
     let alpha = 1.0 - project.accuracy.confidence;
     let viewpoint = &world.viewpoints[index];
@@ -169,7 +194,9 @@ fn of_viewpoint(
         let start = found.len();
         let mut glares = Vec::with_capacity(viewpoint.directions.len());
         for (number, &gaze) in viewpoint.directions.iter().enumerate() {
-            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention };
+            let zones = zones(index, number, &weights);
+            let zones = zones.as_ref().map_err(|reason| *reason);
+            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention, zones };
             let light = light(index, number, &weights, &sighted);
             let glare = view::glare(&light, prepared.emitters(), &sighted, &asked, &weights, alpha);
             found.push(Observed {
@@ -202,7 +229,8 @@ fn of_viewpoint(
                 view.image =
                     (conventions.len() > 1).then(|| of_image(prepared, viewpoint.eye, gaze, &weights));
                 let glare = glares.swap_remove(number);
-                view.sheet = Some(Box::new(sheet(view, gaze, prepared, &sighted, &weights, glare)));
+                let rooms = &world.rooms;
+                view.sheet = Some(Box::new(sheet(view, gaze, prepared, rooms, &sighted, &weights, glare)));
                 break;
             }
         }
@@ -242,6 +270,7 @@ fn sheet(
     view: &Observed,
     gaze: DVec3,
     prepared: &Prepared,
+    rooms: &[Room],
     sighted: &Sighted,
     weights: &[f64],
     glare: view::Glare,
@@ -262,7 +291,7 @@ fn sheet(
         notes: glare.notes,
         card: None,
     };
-    outcome.card = cards::card(prepared, sighted, &outcome, weights, view.convention);
+    outcome.card = cards::card(prepared, rooms, sighted, &outcome, weights, view.convention);
     outcome
 }
 

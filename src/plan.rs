@@ -7,12 +7,13 @@ mod hidden;
 mod lattice;
 mod norm_areas;
 mod requirements;
+mod tasks;
 mod whole_room;
 mod zones;
 
 use glam::DVec3;
 
-pub use hidden::inside_furniture;
+pub use tasks::{BEHIND, PlannedTask, TaskZones, concerns_task};
 
 use crate::grid::{self, Grid, GridError};
 use crate::outcome::{Bound, Modified};
@@ -107,6 +108,8 @@ pub struct PlannedView {
     pub light_scene: usize,
     /// Whether highlights are sources.
     pub highlights: bool,
+    /// Zones about its task; `None` where no index asks for them, or the task lies behind the eye.
+    pub task: Option<PlannedTask>,
 }
 
 /// A requirement and what it is measured on.
@@ -248,6 +251,13 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 lift: DVec3::ZERO,
                 kernels: vec![Kernel::Planar { normal: direction }],
             });
+            let zones = concerns_task(&indices)
+                .then(|| TaskZones::of(&viewpoint.task, viewpoint.eye, direction))
+                .flatten();
+            let task = zones.map(|about| {
+                let rows = about.receivers(viewpoint.eye).map(|receiver| plan.ask(receiver));
+                PlannedTask { about, rows }
+            });
             plan.rooms[viewpoint.room].views.push(PlannedView {
                 name: viewpoint.name.clone(),
                 viewpoint: index,
@@ -258,6 +268,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 indices: indices.clone(),
                 light_scene: viewpoint.light_scene.unwrap_or(0),
                 highlights: viewpoint.highlights,
+                task,
             });
         }
     }

@@ -202,6 +202,11 @@ impl Quantity {
         )
     }
 
+    /// Whether it is a ratio of luminances about a task.
+    pub fn is_luminance_ratio(self) -> bool {
+        matches!(self, Self::OfView { key: "L_task/L_surround" | "L_task/L_far", .. })
+    }
+
     /// Reads a spelling such as `E_h`, `E_v@90` or `L@45,-10`; `None` if it is not one of [`SPELLINGS`].
     /// [`Quantity::OfView`] has no spelling of its own: `M` and `DGP` mean something else of a room.
     pub fn parse(text: &str) -> Option<Self> {

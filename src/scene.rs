@@ -1,6 +1,8 @@
 //! A scene is one closed world of light: geometry, materials, luminaires and the tracer over them,
 //! validated once. It knows no norm, no observer and no file.
 
+mod furniture;
+
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -10,6 +12,8 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::{Simd, Tracer};
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
+
+pub use furniture::inside_furniture;
 
 /// Everything light can meet.
 #[derive(Debug)]

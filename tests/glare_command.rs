@@ -54,12 +54,17 @@ fn project(parts: &[&str]) -> (tempfile::TempDir, String) {
 /// A fisheye of 100 pixels with one bright disc straight ahead that is too large for UGR to hold; `view` says
 /// whether the file knows its view.
 fn picture(folder: &Path, name: &str, knows: bool) -> String {
+    disc(folder, name, knows, DVec3::Y)
+}
+
+/// The same with the disc in another direction.
+fn disc(folder: &Path, name: &str, knows: bool, towards: DVec3) -> String {
     let projection = Projection::AngularFisheye { horizontal_deg: 180.0, vertical_deg: 180.0 };
     let view = View::new(projection, DVec3::ZERO, DVec3::Y, DVec3::Z).expect("a view");
     let luminance = |index: usize| {
         let at = [(index % 100) as f64 + 0.5, (index / 100) as f64 + 0.5];
         view.direction([100, 100], at).map_or(0.0, |direction| {
-            if direction.angle_between(DVec3::Y).to_degrees() < 15.0 { 5000.0 } else { 100.0 }
+            if direction.angle_between(towards).to_degrees() < 15.0 { 5000.0 } else { 100.0 }
         })
     };
     let image = LuminanceImage::new(100, 100, knows.then_some(view), (0..10_000).map(luminance).collect());
@@ -136,6 +141,9 @@ fn options_of_the_other_kind_are_refused() {
         &["--view", "-vta"],
         &["--band", "0.1"],
         &["--experimental"],
+        &["--ceiling-coverage", "0.3"],
+        &["--ground", "200,0.25"],
+        &["--road", "1"],
     ] {
         let (code, out, err) = gershun(&[&["glare", &path], option].concat());
         let says = format!("{} is for images", option[0]);
@@ -251,6 +259,60 @@ fn every_format_says_what_makes_an_index_doubtful() {
     assert_eq!((cell(listed, "azimuth_deg"), cell(listed, "tilt_deg")), ("225", "30"));
     let card = std::fs::read_to_string(folder.path().join("out/glare_card_1.svg")).expect("a card");
     assert!(card.contains(invalid), "{card}");
+}
+
+/// Catches: an index that asks for what no image shows and does not say how to give it, a given number not heeded or
+/// taken for another, one that is none taken in silence.
+#[test]
+fn what_no_image_shows_can_be_given() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let image = disc(folder.path(), "a.hdr", true, DVec3::new(0.4, 0.9, 0.1).normalize());
+    let told = |options: &[&str]| {
+        let (code, out, err) =
+            gershun(&[&["glare", "--format", "json", "--image", &image], options].concat());
+        assert_eq!(code, 0, "{err}");
+        json(&out)
+    };
+    let bare = told(&[]);
+    for (key, what, option) in [
+        ("GGR", "share of the ceiling that shines", "--ceiling-coverage SHARE"),
+        ("GR", "mean horizontal illuminance", "--ground LX,RHO"),
+        ("f_TI", "mean luminance L_av", "--road L"),
+    ] {
+        let reason = bare["indices"][key]["reason"].as_str().expect("a reason");
+        assert!(reason.contains(what) && reason.contains(option), "{key}: {reason}");
+    }
+    let given = told(&["--ceiling-coverage", "0.4", "--ground", "200,0.25", "--road", "2", "--age", "40"]);
+    let value =
+        |key: &str| given["indices"][key]["value"].as_f64().unwrap_or_else(|| panic!("{key}: {given}"));
+    let source = &given["sources"][0];
+    let of_source = |key: &str| source[key].as_f64().expect("a number");
+    let (lx, theta_deg) = (of_source("eye_lx"), of_source("off_axis_deg"));
+    assert_eq!(given["sources"].as_array().map(Vec::len), Some(1));
+    // CC 0.4: 1.18 − 0.18/0.4 = 0.73; E_d of the source, E_i of the rest.
+    let (e_d, e_i) = (value("E_dir"), value("E_v") - value("E_dir"));
+    let ggr = value("UGR") + 0.73 * 8.0 * (2.55 * (1.0 + e_d / 220.0) / (1.0 + e_d / e_i)).log10();
+    assert!((value("GGR") - ggr).abs() < 1e-9, "{} is not {ggr}", value("GGR"));
+    let environment = 0.035 * 0.25 * 200.0 / std::f64::consts::PI;
+    let gr = 27.0 + 24.0 * (10.0 * lx / theta_deg.powi(2) / environment.powf(0.9)).log10();
+    assert!((value("GR") - gr).abs() < 1e-9, "{} is not {gr}", value("GR"));
+    let veil = 9.86 * lx / theta_deg.powi(2) * (1.0 + (40.0f64 / 66.4).powi(4));
+    let f_ti = 65.0 * veil / 2f64.powf(0.8);
+    assert!((value("f_TI") - f_ti).abs() < 1e-9, "{} is not {f_ti}", value("f_TI"));
+    for (option, text) in [
+        ("--ceiling-coverage", "1.2"),
+        ("--ceiling-coverage", "0"),
+        ("--ground", "200"),
+        ("--ground", "200,1.5"),
+        ("--ground", "-1,0.2"),
+        ("--road", "0"),
+    ] {
+        let (code, out, err) = gershun(&["glare", "--image", &image, &format!("{option}={text}")]);
+        assert!(code == 2 && out.is_empty() && err.contains(option), "{option} {text}: {code} {err}");
+    }
+    assert!(
+        given["convention"].as_str().is_some_and(|said| said.contains("ground of 200 lx, reflectance 0.25"))
+    );
 }
 
 /// Catches: maps that JSON and CSV leave out, so that a project with maps alone is `[]` and fine; a project with maps

@@ -59,7 +59,7 @@ fn read(project: &Project, seed: u64, sources: SourceModel) -> Read {
     let exact = |lx: f64| Estimate::exact(lx, 64);
     let light = EyeLight { from_luminaires: exact(400.0), indirect: exact(100.0 * PI) };
     let convention = Convention { sources, ..Convention::default() };
-    let asked = Asked { gaze: DVec3::X, indices: &[], convention };
+    let asked = Asked { gaze: DVec3::X, indices: &[], convention, zones: Err("no task") };
     let found = glare(&light, &emitters, &sighted, &asked, &weights, 0.05);
     let ugr = found.ugr.value.clone().expect("a source is seen");
     // 8/ln 10 · (2 δl/l + δω/ω) of the only luminaire.

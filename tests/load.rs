@@ -807,3 +807,45 @@ fn cameras_are_checked() {
         assert!(all(&errors).contains(message), "{camera}: {}", all(&errors));
     }
 }
+
+/// Catches: an eye in a cupboard or in a wall that reads darkness as its answer, a mistake in a list without its line.
+#[test]
+fn an_eye_inside_furniture_or_a_wall_is_refused_with_its_line() {
+    let room = |eye: &str| {
+        format!(
+            "[scene]\nbox = {{ size = [4, 3, 2.5], floor = 0.2, walls = 0.5, ceiling = 0.7 }}\n\
+             [materials]\nWood = {{ reflectance = 0.4 }}\n[luminaires.A]\npoint = {{ flux = 1000 }}\n\
+             [[place]]\nluminaire = \"A\"\nat = [2, 1.5, 2.4]\n\
+             [[furniture]]\nat = [1, 1, 0]\nsize = [1, 0.5, 1.8]\nmaterial = \"Wood\"\n{eye}"
+        )
+    };
+    let seat =
+        |eye: &str| room(&format!("[[viewpoint]]\nname = \"Seat\"\neye = {eye}\ndirection = [0, 1, 0]\n"));
+    for (eye, what) in [
+        ("[1.5, 1.2, 1.2]", "the eye of viewpoint \"Seat\" lies inside furniture"),
+        ("[4.004, 1.2, 1.2]", "the eye of viewpoint \"Seat\" lies in a wall"),
+        ("[3, 1.2, -0.003]", "the eye of viewpoint \"Seat\" lies in a wall, the floor"),
+    ] {
+        let text = seat(eye);
+        let errors = load_text(&text).unwrap_err();
+        assert_eq!(errors.len(), 1, "{}", all(&errors));
+        let line = 1 + text.lines().position(|line| line.starts_with("eye")).expect("it is written");
+        assert!(errors[0].line == line && errors[0].message.contains(what), "{}", errors[0]);
+        assert!(errors[0].hint.contains("move the eye"), "{}", errors[0]);
+    }
+    // Beside and above it there is room.
+    for eye in ["[1.5, 0.9, 1.2]", "[1.5, 1.2, 1.9]", "[4, 1.2, 1.2]"] {
+        assert!(load_text(&seat(eye)).is_ok(), "{eye}");
+    }
+    let list = room("[lists]\nviewpoints = \"views.csv\"\n");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let rows = "name,x,y,z,azimuth,tilt\nFree,3,2,1.2,90,0\nShut,1.5,1.2,1.2,90,0\n";
+    fs::write(folder.path().join("views.csv"), rows).expect("a temporary file");
+    let errors = load_in(folder.path(), &list).unwrap_err();
+    assert_eq!(
+        (errors.len(), errors[0].file.as_str(), errors[0].line),
+        (1, "views.csv", 3),
+        "{}",
+        all(&errors)
+    );
+}

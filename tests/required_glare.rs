@@ -1,7 +1,9 @@
 //! `[[require]]` on figures of a view: every index of the table, judged in its worst direction, with the
 //! reason where a viewpoint has none.
 
+mod common;
 mod projects;
+mod task_luminances;
 
 use gershun::glare::index::INDICES;
 use gershun::outcome::{Outcome, Requirement, Verdict};

@@ -5,9 +5,10 @@ use super::Context;
 use crate::glare::source::nothing_glares;
 use crate::luminaire::LuminaireType;
 use crate::measure::glare_sources::Convention;
+use crate::measure::zones::ZoneLight;
 use crate::measure::{self, Gauged, area, intensity, room_ugr, view};
 use crate::outcome::{Bound, UgrTableOutcome, Verdict};
-use crate::plan::{PlannedRequirement, Subject};
+use crate::plan::{BEHIND, PlannedRequirement, Subject};
 use crate::project::{Declared, Room};
 use crate::quantity::{Property, Quantity};
 use crate::scene::Channel;
@@ -255,6 +256,12 @@ impl Context<'_> {
         (one.gauged, notes)
     }
 
+    /// Light of the zones about the task of a planned view, where it is asked for and lies before the eye.
+    pub(super) fn zones(&self, room: usize, index: usize, weights: &[f64]) -> Option<ZoneLight> {
+        let planned = self.plan.rooms[room].views[index].task.as_ref()?;
+        Some(ZoneLight::of_rows(&self.answers, planned, weights))
+    }
+
     /// Glare of a planned view; `indices` are wanted beside UGR.
     pub(super) fn glare(
         &self,
@@ -269,7 +276,9 @@ impl Context<'_> {
         let sighted = &self.seen[room][index];
         let convention = Convention::default();
         let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
-        let asked = view::Asked { gaze: planned.direction, indices, convention };
+        let zones = self.zones(room, index, &weights).ok_or(BEHIND);
+        let zones = zones.as_ref().map_err(|reason| *reason);
+        let asked = view::Asked { gaze: planned.direction, indices, convention, zones };
         view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
     }
 }

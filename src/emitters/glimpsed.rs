@@ -34,6 +34,7 @@ const ALIKE: f64 = 1.2;
 pub fn glimpsed_from(emitters: &Emitters, eye: DVec3, seed: u64) -> Sighted {
     let all = 0..emitters.sources.len();
     Sighted {
+        eye,
         luminaires: all.filter_map(|index| glimpsed(emitters, index, eye, seed)).collect(),
         surfaces: shining_coarsely(emitters, eye, seed),
         glints: None,

@@ -60,6 +60,8 @@ pub struct SeenPiece {
 /// Everything that shines, as seen from one eye in all directions.
 #[derive(Clone, Debug, Default)]
 pub struct Sighted {
+    /// The eye, m.
+    pub eye: DVec3,
     /// Luminaires and their images.
     pub luminaires: Vec<Seen>,
     /// Luminous surfaces and their images.
@@ -72,6 +74,7 @@ pub struct Sighted {
 /// wanted. Draws from `seed` only.
 pub fn sighted_from(emitters: &Emitters, eye: DVec3, seed: u64, highlights: bool) -> Sighted {
     Sighted {
+        eye,
         luminaires: seen_from(emitters, eye, seed),
         surfaces: shining_from(emitters, eye, seed),
         glints: highlights.then(|| glints_from(emitters, eye, seed)),

@@ -1,6 +1,8 @@
 //! The table of indices: what there is to compute of a view, with units, sources and limits. Whatever
 //! lists, parses or prints indices reads it; a new index is one function and one row.
 
+use super::luminances::Part::{Far, Surround, Task};
+use super::luminances::ZoneFigure::{self, Luminance, TaskOver};
 use super::source::{Given, Sight};
 use super::{
     cgi, dgi, dgp, discomfort, ggr, gr, luminances, threshold_increment, ugp, ugr, ugr_exp, vcp, veiling,
@@ -26,6 +28,8 @@ pub struct Index {
     pub judged: bool,
     /// Whether more of it means less glare.
     pub more_is_better: bool,
+    /// What of the zones about a task it is; `None` for all else.
+    pub zones: Option<ZoneFigure>,
 }
 
 fn always(_: &Sight) -> Vec<String> {
@@ -48,7 +52,11 @@ const fn index(
     value: fn(&Sight) -> Result<f64, Undefined>,
     validity: fn(&Sight) -> Vec<String>,
 ) -> Index {
-    Index { key, name, unit, source, value, validity, judged: false, more_is_better: false }
+    Index { key, name, unit, source, value, validity, judged: false, more_is_better: false, zones: None }
+}
+
+const fn of_zones(figure: ZoneFigure, index: Index) -> Index {
+    Index { zones: Some(figure), ..index }
 }
 
 const fn judged(index: Index) -> Index {
@@ -86,7 +94,21 @@ pub const INDICES: &[Index] = &[
     index("E_dir", "part of E_v from the sources", "lx", "on the same plane", luminances::e_direct, always),
     index("L_b", "background luminance", "cd/m²", "(E_v - E_dir)/π", luminances::l_b, always),
     index("L_mean", "mean luminance of the field of view", "cd/m²", "weighted by solid angle", luminances::l_mean, always),
+    of_zones(Luminance(Task), index("L_task", "mean luminance of the task", "cd/m²", "in the task's cone", luminances::l_task, always)),
+    of_zones(Luminance(Surround), index("L_surround", "mean luminance of the task's surround", "cd/m²",
+        "up to 30° from the task", luminances::l_surround, always)),
+    of_zones(Luminance(Far), index("L_far", "mean luminance of the far field", "cd/m²",
+        "from 30° to 60° from the task", luminances::l_far, always)),
+    of_zones(TaskOver(Surround), judged(index("L_task/L_surround", "luminance of the task to its surround", "1",
+        "custom: within 3 : 1 and 1 : 3", luminances::task_to_surround, always))),
+    of_zones(TaskOver(Far), judged(index("L_task/L_far", "luminance of the task to the far field", "1",
+        "custom: within 10 : 1 and 1 : 10", luminances::task_to_far, always))),
 ];
+
+/// The rows that concern a task and what surrounds it.
+pub fn of_task() -> impl Iterator<Item = &'static Index> {
+    INDICES.iter().filter(|index| index.zones.is_some())
+}
 
 /// The index of a key; `None` for anything else.
 pub fn parse(key: &str) -> Option<&'static Index> {

@@ -56,7 +56,7 @@ pub struct ImageSource {
 /// Glare of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageGlare {
-    /// Every index of the table.
+    /// Every index of the table; those of a task where one is given.
     pub readings: Vec<Reading>,
     /// The sources.
     pub sources: Vec<ImageSource>,
@@ -113,12 +113,15 @@ pub fn glare_of_image(
     }
     sight.e_v_lx = options.measured_e_v_lx.unwrap_or_else(|| field.illuminance_lx());
     sight.background = Nits(sight.e_indirect_lx() / std::f64::consts::PI);
-    let readings: Vec<Reading> = INDICES.iter().map(|index| index.read(&sight)).collect();
+    sight.zones = options.task.map(|task| field.zones(&task));
+    // Without a task there is nothing to compare: five rows of the same reason would tell no more.
+    let asked = INDICES.iter().filter(|index| index.zones.is_none() || options.task.is_some());
+    let readings: Vec<Reading> = asked.map(|index| index.read(&sight)).collect();
     let dgp = super::dgp::dgp(&sight);
     Ok(ImageGlare {
         readings,
         dgp_class: dgp.ok().map(DgpClass::of),
-        zones: options.task.map(|task| field.zones(&task)),
+        zones: sight.zones.clone(),
         band: options.band_rad.map(|half_angle_rad| field.band(half_angle_rad)),
         convention: convention(options, found.threshold),
         sources,
@@ -167,11 +170,21 @@ fn convention(options: &Options, threshold: Nits) -> String {
         None => "E_v of the image",
     };
     let dgp = options.given.dgp.words();
+    let mut given = String::new();
+    if let Some(coverage) = options.given.ceiling_coverage {
+        given += &format!("; {coverage} of the ceiling shines");
+    }
+    if let Some(ground) = options.given.ground {
+        given += &format!("; ground of {} lx, reflectance {}", ground.mean_lx, ground.reflectance);
+    }
+    if let Some(road) = options.given.road {
+        given += &format!("; road of {} cd/m²", road.0);
+    }
     let low_light = if options.given.low_light { ", low-light factor" } else { "" };
     format!(
         "{threshold}; pixels within {} rad of each other are one source; {peak}; luminance of a source: mean \
          weighted by solid angle; {}; {e_v}; L_b = (E_v - E_dir)/π; {dgp}{low_light}; veil of an eye of {} \
-         years, pigment {}",
+         years, pigment {}{given}",
         0.5 * options.search.radius_rad,
         options.position.words(),
         options.given.age_years,

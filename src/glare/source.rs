@@ -1,6 +1,7 @@
 //! What one eye sees, as the indices take it: sources, illuminances at the eye, background. E_v and
 //! its parts are on the plane *perpendicular to the line of sight*, never horizontal.
 
+use super::luminances::Zones;
 use crate::units::{Nits, Undefined};
 
 /// The reason why there is no index where nothing shines: no glare, unlike every other reason.
@@ -46,11 +47,36 @@ pub struct Extent {
     pub distance_m: f64,
 }
 
+/// A part of a source at its own angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrayPart {
+    /// Which source, in the order of the view.
+    pub source: usize,
+    /// Angle from the line of sight, degrees.
+    pub off_axis_deg: f64,
+    /// Its share of the illuminance that the source gives on the plane of the eye.
+    pub share: f64,
+}
+
+/// Light that comes to an eye at an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtAngle {
+    /// Angle from the line of sight, degrees.
+    pub off_axis_deg: f64,
+    /// Illuminance on the plane of the eye, lx.
+    pub eye_lx: f64,
+    /// Whether it is one of several parts of a source.
+    pub is_part: bool,
+}
+
 /// One view of one eye: everything that an index may ask for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sight {
     /// The sources.
     pub sources: Vec<GlareSource>,
+    /// Where the light of sources with a size comes from, for veiling luminance; a source without parts lies at its
+    /// own angle.
+    pub parts: Vec<StrayPart>,
     /// Illuminance on the plane of the eye, sources included, E_v, lx.
     pub e_v_lx: f64,
     /// The part of E_v that comes from the sources, E_dir, lx.
@@ -59,6 +85,8 @@ pub struct Sight {
     pub background: Nits,
     /// Mean luminance of the field of view weighted by solid angle, cd/m²; VCP asks for it.
     pub mean: Option<Nits>,
+    /// Luminances of a task and of what surrounds it; `None` where no task is given.
+    pub zones: Option<Result<Zones, Undefined>>,
     /// What only some indices ask for.
     pub given: Given,
 }
@@ -127,6 +155,25 @@ impl Default for Given {
 }
 
 impl Sight {
+    /// The light of the sources by its angle: part by part where parts are known.
+    pub fn by_angle(&self) -> Vec<AtAngle> {
+        let mut all = Vec::with_capacity(self.sources.len() + self.parts.len());
+        for (index, source) in self.sources.iter().enumerate() {
+            let parts = self.parts.iter().filter(|part| part.source == index);
+            let before = all.len();
+            all.extend(parts.map(|part| AtAngle {
+                off_axis_deg: part.off_axis_deg,
+                eye_lx: part.share * source.eye_lx,
+                is_part: true,
+            }));
+            if all.len() == before {
+                let GlareSource { off_axis_deg, eye_lx, .. } = *source;
+                all.push(AtAngle { off_axis_deg, eye_lx, is_part: false });
+            }
+        }
+        all
+    }
+
     /// The part of E_v that does not come from the sources, lx.
     pub fn e_indirect_lx(&self) -> f64 {
         self.e_v_lx - self.e_direct_lx

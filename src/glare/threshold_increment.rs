@@ -2,6 +2,7 @@
 //! is *disability* glare and knows no position index.
 
 use super::source::{Sight, positive};
+use super::veiling::over_sources;
 use crate::units::Undefined;
 
 /// Angles from the line of sight within which a luminaire counts, degrees.
@@ -20,20 +21,15 @@ const DARKEST_ROAD: f64 = 0.05;
 /// A source within 0.1° of the line of sight.
 pub fn veiling_en_13201(sight: &Sight) -> Result<f64, Undefined> {
     let age = sight.given.age_years;
-    let mut sum = 0.0;
-    for source in &sight.sources {
-        let theta = source.off_axis_deg;
-        if !(theta > ANGLES_DEG[0]) {
-            return Err(Undefined::because("a source lies within 0.1° of the line of sight"));
-        }
+    over_sources(sight, ANGLES_DEG[0], |theta| {
         if theta <= SMALL_ANGLE_DEG {
-            let straylight = 5.0 / (theta * theta) * (1.0 + (age / 62.5).powi(4));
-            sum += source.eye_lx * (10.0 / theta.powi(3) + straylight);
+            10.0 / theta.powi(3) + 5.0 / (theta * theta) * (1.0 + (age / 62.5).powi(4))
         } else if theta <= ANGLES_DEG[1] {
-            sum += source.eye_lx * 9.86 / (theta * theta) * (1.0 + (age / 66.4).powi(4));
+            9.86 / (theta * theta) * (1.0 + (age / 66.4).powi(4))
+        } else {
+            0.0
         }
-    }
-    Ok(sum)
+    })
 }
 
 /// f_TI = 65 L_v/L_av^0.8 for 0.05 < L_av ≤ 5 cd/m², 95 L_v/L_av^1.05 above, %; EN 13201-3:2015.
@@ -41,7 +37,8 @@ pub fn veiling_en_13201(sight: &Sight) -> Result<f64, Undefined> {
 /// # Errors
 /// The road's luminance is not given or not above 0.05 cd/m², or as [`veiling_en_13201`].
 pub fn threshold_increment(sight: &Sight) -> Result<f64, Undefined> {
-    let road = sight.given.road.ok_or_else(|| Undefined::because("the road's luminance is not given"))?;
+    let road =
+        sight.given.road.ok_or_else(|| Undefined::because("the road's mean luminance L_av is not given"))?;
     let road = positive(road.0, "the road is dark")?;
     if !(road > DARKEST_ROAD) {
         return Err(Undefined::because("f_TI is defined above a road luminance of 0.05 cd/m² only"));

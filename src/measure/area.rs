@@ -139,15 +139,24 @@ pub fn gauge_of_task(own: &Blocks, task: &Blocks, alpha: f64) -> Gauged {
     if own.values.is_empty() || task.values.is_empty() {
         return Gauged::undefined(Undefined::because("the area has no point"));
     }
-    let pair = Pair::from_blocks(&mean_blocks(own), &mean_blocks(task));
+    let hidden = [own.hidden_mean(), task.hidden_mean()];
+    let gauged = ratio([&mean_blocks(own), &mean_blocks(task)], hidden, alpha);
+    let dark = || Gauged::undefined(Undefined::because("no light arrives on the task area: 0/0"));
+    gauged.unwrap_or_else(dark)
+}
+
+/// First over second of two series of blocks by Fieller's interval, opened by what is `hidden` of either; `None`
+/// where the second is dark.
+pub(super) fn ratio([x, y]: [&[f64]; 2], hidden: [f64; 2], alpha: f64) -> Option<Gauged> {
+    let pair = Pair::from_blocks(x, y);
     if !(pair.y > 0.0) {
-        return Gauged::undefined(Undefined::because("no light arrives on the task area: 0/0"));
+        return None;
     }
     let ratio = pair.ratio();
     let (mut lo, mut hi) = pair.ratio_interval(alpha);
-    hi += own.hidden_mean() / pair.y;
-    lo *= pair.y / (pair.y + task.hidden_mean());
-    Gauged { value: Ok(ratio.value), se: ratio.se, lo, hi, place: None }
+    hi += hidden[0] / pair.y;
+    lo *= pair.y / (pair.y + hidden[1]);
+    Some(Gauged { value: Ok(ratio.value), se: ratio.se, lo, hi, place: None })
 }
 
 /// Block values of the mean over the points.

@@ -65,6 +65,8 @@ pub struct Counted {
     pub direction: DVec3,
     /// Index into [`Emitters::sources`]; `None` for a luminous surface.
     pub emitter: Option<usize>,
+    /// Index into [`Sighted::surfaces`]; `None` for all but luminous surfaces.
+    pub surface: Option<usize>,
 }
 
 /// The sources of a view.
@@ -109,7 +111,7 @@ pub fn sources(
         }
     }
     let mut variance = 0.0;
-    for surface in &sighted.surfaces {
+    for (index, surface) in sighted.surfaces.iter().enumerate() {
         let luminance = weights[surface.channel] * surface.luminance_cd_m2;
         if !(luminance > 0.0) {
             continue;
@@ -118,7 +120,8 @@ pub fn sources(
         found.surfaces_lx[0] += eye_lx;
         variance += se_lx * se_lx;
         let name = &emitters.scene.mesh.surfaces[surface.surface].name;
-        found.counted.extend(luminous_surface(surface, luminance, &frame, name, eye_lx, &mut found.notes));
+        let counted = luminous_surface(surface, luminance, &frame, name, eye_lx, &mut found.notes);
+        found.counted.extend(counted.map(|counted| Counted { surface: Some(index), ..counted }));
     }
     for glint in sighted.glints.iter().flatten() {
         let weight = weights[emitters.sources[glint.source].channel];
@@ -236,6 +239,7 @@ fn luminaire(
         visible_fraction: one.visible_fraction,
         direction: one.light.try_normalize().unwrap_or(one.direction),
         emitter: Some(one.source),
+        surface: None,
     })
 }
 
@@ -330,6 +334,7 @@ fn luminous_surface(
         visible_fraction: visible_sr / surface.whole_sr,
         direction: ahead().map(|piece| piece.passed_vector).sum::<DVec3>().normalize_or_zero(),
         emitter: None,
+        surface: None,
     })
 }
 
@@ -381,11 +386,13 @@ fn highlight(
         visible_fraction: 1.0,
         direction,
         emitter: None,
+        surface: None,
     };
     Some((counted, on_eye.se))
 }
 
-fn label(emitters: &Emitters, index: usize) -> String {
+/// What a source is called.
+pub fn label(emitters: &Emitters, index: usize) -> String {
     let source = &emitters.sources[index];
     let luminaire = emitters.luminaire(source);
     let image = if source.mirror.is_some() { ", mirrored" } else { "" };

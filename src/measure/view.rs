@@ -6,6 +6,8 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::glare_sources::{Convention, sources};
+use super::stray::parts;
+use super::zones::ZoneLight;
 use super::{Answers, Gauged};
 use crate::emitters::{Emitters, Sighted};
 use crate::estimate::{Estimate, quantile};
@@ -13,9 +15,10 @@ use crate::glare::index::{Index, parse};
 use crate::glare::propagate::{SightError, Spread, standard_error};
 use crate::glare::source::{GlareSource, Sight};
 use crate::glare::ugr::{ugr, validity};
+use crate::glare::veiling::STRAYED;
 use crate::outcome::{GlareSourceOutcome, IndexOutcome};
 use crate::solve::Part;
-use crate::units::Nits;
+use crate::units::{Nits, Undefined};
 
 /// What is asked of a view.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +29,8 @@ pub struct Asked<'a> {
     pub indices: &'a [&'static str],
     /// How sources and positions are taken.
     pub convention: Convention,
+    /// Light of the zones about the task, or why it is not known.
+    pub zones: Result<&'a ZoneLight, &'a str>,
 }
 
 /// Glare of one observer in one direction under one light scene.
@@ -111,6 +116,12 @@ pub fn glare(
         e_v_lx,
         e_direct_lx: from_luminaires.value + surfaces_lx,
         background: Nits(background_cd_m2),
+        parts: if asked.indices.iter().any(|key| STRAYED.contains(key)) {
+            parts(emitters, sighted, &found.counted, asked.gaze)
+        } else {
+            Vec::new()
+        },
+        zones: Some(asked.zones.map(ZoneLight::zones).map_err(Undefined::because)),
         ..Sight::default()
     };
     let error = SightError {
@@ -122,7 +133,10 @@ pub fn glare(
         indirect: indirect.widenings(alpha),
         direct: from_luminaires.widenings(alpha).into_iter().fold(1.0, f64::max),
     };
-    let gauge = |index: &Index| gauge(index, &sight, &error, indirect.n, alpha, &skewed);
+    let gauge = |index: &Index| match (index.zones, asked.zones) {
+        (Some(figure), Ok(zones)) => zones.gauge(figure, alpha),
+        _ => gauge(index, &sight, &error, indirect.n, alpha, &skewed),
+    };
     let ugr_row = parse("UGR").expect("the table of indices begins with UGR");
     let indices = asked.indices.iter().filter(|key| **key != "UGR").filter_map(|key| parse(key));
     let mut notes = found.notes;
@@ -153,6 +167,12 @@ pub fn glare(
                 let gauged = gauge(index);
                 let mut notes = if gauged.value.is_ok() { (index.validity)(&sight) } else { Vec::new() };
                 notes.extend(index.assumption(&sight.given).filter(|_| gauged.value.is_ok()));
+                if !sight.parts.is_empty() && gauged.value.is_ok() && STRAYED.contains(&index.key) {
+                    notes.push(IN_PARTS.to_owned());
+                }
+                if let (Some(_), Ok(zones)) = (index.zones, asked.zones) {
+                    notes.extend(zones.words.iter().cloned());
+                }
                 GaugedIndex { index, gauged, notes }
             })
             .collect(),
@@ -162,6 +182,9 @@ pub fn glare(
         notes,
     }
 }
+
+/// What is said of veiling luminance: an approximation that no interval holds.
+const IN_PARTS: &str = "sources with a size count by their parts, each at its own angle, within about 2 %";
 
 /// A source's part of Σ L²ω/P², by intensity where it is small.
 fn term(source: &GlareSource) -> f64 {

@@ -7,15 +7,16 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::emitters::{Emitters, Sighted};
+use crate::geometry::polygon;
 use crate::glare::position_index::Position;
 use crate::glare::source::{Extent, GlareSource};
 use crate::glare::ugr::ugr;
 use crate::image::{Projection, View};
-use crate::measure::glare_sources::{Convention, Counted, sources};
+use crate::measure::glare_sources::{Convention, Counted, label, sources};
 use crate::measure::weights;
 use crate::outcome::{Card, PlacedSource, Remedy, Shift, ViewpointOutcome};
 use crate::plan::PlannedView;
-use crate::project::{Project, World};
+use crate::project::{Project, Room, World};
 use crate::solve::{Prepared, thumbnail};
 use crate::units::Nits;
 
@@ -28,6 +29,8 @@ const RING: usize = 24;
 const RING_RAD: f64 = 0.03;
 /// How far a luminaire is shifted, m, and to what share of its light it is dimmed.
 pub const SHIFT_M: f64 = 1.0;
+/// How far before its opening a luminaire looks for what stands in its way, m.
+const BEFORE_M: f64 = 0.005;
 /// Share of its light to which a luminaire is dimmed.
 pub const DIMMED: f64 = 0.5;
 
@@ -57,16 +60,17 @@ pub fn add(
             let light_scene = &project.light_scenes[planned[number].light_scene];
             let weights = weights(world, light_scene, &world.rooms[room], false);
             let view = &views[place(number)];
-            let card = card(prepared, &seen[number], view, &weights, Convention::default());
+            let card = card(prepared, &world.rooms, &seen[number], view, &weights, Convention::default());
             views[place(number)].card = card;
         }
     }
 }
 
 /// The card of a view that is seen by `sighted`, with the factors of its light scene; `None` where
-/// the method stores no field.
+/// the method stores no field. `rooms` are those of the world.
 pub fn card(
     prepared: &Prepared,
+    rooms: &[Room],
     sighted: &Sighted,
     view: &ViewpointOutcome,
     weights: &[f64],
@@ -86,7 +90,7 @@ pub fn card(
     Some(Card {
         sources: counted.iter().map(|source| placed(emitters, &camera, source)).collect(),
         dimmed: dimmed(emitters, &counted, background),
-        moved: moved(emitters, &counted, view, convention, weights),
+        moved: moved(emitters, rooms, &counted, view, convention, weights),
         picture,
     })
 }
@@ -164,12 +168,43 @@ fn dimmed(emitters: &Emitters, counted: &[Counted], background: Nits) -> Option<
             }
             Some(changed)
         })?;
-        Some(Remedy { luminaire: one.label.clone(), ugr, shift: None })
+        let index = own?;
+        // A luminaire that is not seen itself glares by its images only.
+        let is_seen = counted.iter().any(|source| source.emitter == Some(index));
+        let image = one.emitter.and_then(|image| emitters.sources[image].mirror).filter(|_| !is_seen);
+        let mirror = image.map(|mirror| {
+            let surface = emitters.scene.tracer.surface(emitters.mirrors[mirror].triangles[0]);
+            emitters.scene.mesh.surfaces[surface as usize].name.clone()
+        });
+        Some(Remedy { luminaire: label(emitters, index), ugr, shift: None, mirror })
     }))
+}
+
+/// Whether a luminaire may be shifted so: it stays in its room, and nothing stands in its way. Looked at from places
+/// along the outline of its opening and from its middle, a little before the surface that it may be set into.
+fn may_shift(emitters: &Emitters, rooms: &[Room], index: usize, shift: DVec3) -> bool {
+    let source = &emitters.sources[index];
+    let luminaire = emitters.luminaire(source);
+    let outline = emitters.outline(source);
+    let edges = outline.iter().enumerate();
+    let along = edges.flat_map(|(corner, &from)| {
+        let to = outline[(corner + 1) % outline.len()];
+        (0..PARTS).map(move |part| from.lerp(to, part as f64 / PARTS as f64))
+    });
+    let before = BEFORE_M * luminaire.beam_axis();
+    let way = shift.normalize_or_zero();
+    let room = rooms.iter().find(|room| room.luminaires.contains(&source.luminaire));
+    std::iter::once(source.position).chain(along).all(|place| {
+        let hit = emitters.scene.tracer.closest(place + before, way, &luminaire.body);
+        let is_free = hit.is_none_or(|hit| hit.distance_m > shift.length());
+        let there = (place + shift).truncate();
+        is_free && room.is_none_or(|room| polygon::contains(&room.footprint, there, 0.0))
+    })
 }
 
 fn moved(
     emitters: &Emitters,
+    rooms: &[Room],
     counted: &[Counted],
     view: &ViewpointOutcome,
     convention: Convention,
@@ -186,6 +221,9 @@ fn moved(
     least(own.flat_map(|(one, index)| ways.map(|way| (one, index, way))).filter_map(
         |(one, index, (shift, way))| {
             let source = &emitters.sources[index];
+            if !may_shift(emitters, rooms, index, SHIFT_M * way) {
+                return None;
+            }
             let [luminance, solid_angle_sr] = emitters.shifted(source, view.eye, SHIFT_M * way)?;
             let towards = source.position + SHIFT_M * way - view.eye;
             let position = convention.position.position(view.direction, up, towards.normalize());
@@ -214,7 +252,7 @@ fn moved(
                     }),
                 })
             })?;
-            Some(Remedy { luminaire: one.label.clone(), ugr, shift: Some(shift) })
+            Some(Remedy { luminaire: one.label.clone(), ugr, shift: Some(shift), mirror: None })
         },
     ))
 }

@@ -8,10 +8,9 @@ use crate::estimate::Estimate;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
 use crate::outcome::{IndexOutcome, Interval};
-use crate::plan::inside_furniture;
 use crate::project::{GlareMap, Project, World};
 use crate::query::{Demand, Kernel, Receiver};
-use crate::scene::Scene;
+use crate::scene::{Scene, inside_furniture};
 use crate::solve::{Effort, GlanceEffort, Mended, Method, Prepared, Sheet, answer, glances, mend, prepare};
 use crate::units::Undefined;
 
@@ -90,6 +89,9 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
     }
     all
 }
+
+/// Why no eye of a map has luminances of task and surround; its project may not ask for them.
+const NO_TASK: &str = "the eyes of a map have no task";
 
 /// The usual effort of a swift map.
 pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 384, rough: 0.012, walks: 32 };
@@ -175,7 +177,7 @@ pub fn swift_eyes(
                 from_luminaires: from_luminaires(&sighted, emitters, gaze, &weights),
                 indirect: Estimate::from_blocks(&of_replicates),
             };
-            let asked = view::Asked { gaze, indices: &map.indices, convention };
+            let asked = view::Asked { gaze, indices: &map.indices, convention, zones: Err(NO_TASK) };
             let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
             let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
             (glare.ugr.interval(), further)
@@ -252,7 +254,7 @@ pub fn unbiased_at(
             let views = sights.iter().enumerate().map(|(direction, &gaze)| {
                 let row = first_rows[receiver + number] + direction;
                 let light = view::EyeLight::of_row(&answers, row, &weights);
-                let asked = view::Asked { gaze, indices: &map.indices, convention };
+                let asked = view::Asked { gaze, indices: &map.indices, convention, zones: Err(NO_TASK) };
                 let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
                 let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
                 (glare.ugr.interval(), further)

@@ -18,6 +18,10 @@ use crate::solve::{GlanceEffort, as_stored, glances, prepare_stored};
 /// Rays of an eye: their own noise is below a tenth of what the field errs by.
 const EFFORT: GlanceEffort = GlanceEffort { replicates: 4, rays: 1024, rough: 0.002, walks: 0 };
 
+/// Why a kept field has no luminances of task and surround: it is looked up for the plane of the eye.
+const NO_ZONES: &str =
+    "luminances of task and surround are not computed from a kept field: leave `--field` out, or run `check`";
+
 /// All viewpoints of a project in all directions under their own light scene, from one stored field for each
 /// world.
 pub fn observe_stored(project: &Project, fields: Vec<StoredField>, sheets: Sheets) -> Vec<Observed> {
@@ -42,8 +46,9 @@ fn of_world(project: &Project, world: &World, field: StoredField, sheets: Sheets
                 indirect: Estimate::from_blocks(&blocks),
             }
         };
-        let mut found =
-            of_viewpoint(project, world, index, &prepared, &[Convention::default()], sheets, light);
+        let zones = |_: usize, _: usize, _: &[f64]| Err(NO_ZONES);
+        let conventions = [Convention::default()];
+        let mut found = of_viewpoint(project, world, index, &prepared, &conventions, sheets, light, zones);
         for view in &mut found {
             view.approximations.clone_from(&said);
             let estimates = view.indices.iter_mut().map(|index| &mut index.estimate);

@@ -11,8 +11,8 @@ pub struct Card {
     pub sources: Vec<PlacedSource>,
     /// The luminaire that lowers UGR most if its light is halved; the background is left as it is.
     pub dimmed: Option<Remedy>,
-    /// The luminaire that lowers UGR most if it is shifted level by 1 m, as if nothing were in its way there;
-    /// background and images are left as they are.
+    /// The luminaire that lowers UGR most if it is shifted level by 1 m: within its room, past nothing that stands in
+    /// its way, as if nothing hid it there; background and images are left as they are.
     pub moved: Option<Remedy>,
 }
 
@@ -34,6 +34,9 @@ pub struct Remedy {
     pub ugr: f64,
     /// Direction of the shift from the eye's point of view.
     pub shift: Option<Shift>,
+    /// The surface in which it is seen, where only its images glare and not the luminaire itself: turning or
+    /// covering that helps as well.
+    pub mirror: Option<String>,
 }
 
 /// Directions on the level, as the eye sees them.

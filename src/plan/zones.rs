@@ -6,13 +6,12 @@
 use glam::{DVec2, DVec3};
 
 use super::areas::{SNAP_M, on_surface};
-use super::hidden::inside_furniture;
 use super::lattice::{Plane, Tally, bounds, cells, lattice};
 use super::{PlannedArea, PlannedRoom};
 use crate::grid::{distance_to_outline, inside, spacing_m, width};
 use crate::norm::{Application, Row, Zone};
 use crate::project::{AreaKind, AreaShape, Room, World};
-use crate::scene::Scene;
+use crate::scene::{Scene, inside_furniture};
 
 /// Share of a zone that areas must cover for it to count as assessed: edges and corners may be cut.
 const COVERED: f64 = 0.9;

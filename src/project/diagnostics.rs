@@ -33,6 +33,11 @@ impl Place {
         Self(Diagnostic::at(file, text, span, String::new(), String::new()))
     }
 
+    /// A line of `text`, counted from 1.
+    pub fn line(file: &str, text: &str, line: usize) -> Self {
+        Self(Diagnostic::at_line(file, text, line, String::new(), ""))
+    }
+
     /// A mistake at this place.
     pub fn mistake(&self, message: String, hint: String) -> Diagnostic {
         Diagnostic { message, hint, ..self.0.clone() }

@@ -21,6 +21,7 @@ pub use photometric::{ReadError, is_same_file, read_field, read_image, read_phot
 
 use crate::geometry::polygon;
 use crate::geometry::trace::Simd;
+use crate::glare::luminances::TASK_DEG;
 use crate::grid::GridRule;
 use crate::image::View;
 use crate::norm::Standard;
@@ -309,6 +310,32 @@ pub struct Viewpoint {
     pub light_scene: Option<usize>,
     /// Whether highlights in glossy planes are glare sources.
     pub highlights: bool,
+    /// What is looked at, for the luminances of task and surround.
+    pub task: Task,
+    /// Where the user wrote its eye; `None` where no file has it.
+    pub written: Option<Place>,
+}
+
+/// What an observer looks at: a cone of directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Task {
+    /// The place in its middle, m; `None`: the line of sight.
+    pub at: Option<DVec3>,
+    /// Full opening angle of the cone, degrees.
+    pub opening_deg: f64,
+}
+
+impl Default for Task {
+    fn default() -> Self {
+        Self { at: None, opening_deg: TASK_DEG }
+    }
+}
+
+impl Task {
+    /// Unit direction to its middle for an eye that looks along `gaze`.
+    pub fn direction(&self, eye: DVec3, gaze: DVec3) -> DVec3 {
+        self.at.and_then(|at| (at - eye).try_normalize()).unwrap_or(gaze)
+    }
 }
 
 /// A grid of eyes that look in several directions each.

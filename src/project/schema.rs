@@ -259,6 +259,8 @@ pub struct ViewpointSection {
     pub indices: Vec<At<String>>,
     pub light_scene: Option<At<String>>,
     pub highlights: Option<At<bool>>,
+    pub task: Option<At<[f64; 3]>>,
+    pub task_deg: Option<At<f64>>,
 }
 
 #[derive(Debug, Deserialize)]

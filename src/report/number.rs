@@ -128,6 +128,7 @@ fn decimals(quantity: Quantity, statistic: Statistic, value: f64) -> usize {
         | Quantity::Spherical
         | Quantity::OfView { unit: "lx", .. } => illuminance_decimals(value),
         Quantity::OfView { .. } if quantity.is_probability() => 3,
+        Quantity::OfView { .. } if quantity.is_luminance_ratio() => 2,
         Quantity::Luminance { .. } | Quantity::Intensity | Quantity::ColourRendering => 0,
         Quantity::Modelling
         | Quantity::Declared(Property::PstLm | Property::Svm)

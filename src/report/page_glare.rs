@@ -163,7 +163,11 @@ fn further(views: &[ViewpointOutcome], lang: Lang) -> String {
     let mut rows = Vec::new();
     for view in views {
         for index in &view.indices {
-            let decimals = if index.unit == "1" && index.key.contains("GP") { 3 } else { 1 };
+            let decimals = match index.unit.as_str() {
+                "1" if index.key.contains("GP") => 3,
+                "1" if index.key.contains('/') => 2,
+                _ => 1,
+            };
             let name = words::index_name(lang, &index.key);
             let (value, interval, reason) = match &index.estimate {
                 Ok(estimate) => (

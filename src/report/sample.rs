@@ -202,8 +202,13 @@ fn card() -> crate::outcome::Card {
     crate::outcome::Card {
         picture: crate::image::LuminanceImage::new(4, 4, None, luminances),
         sources: (0..7).map(placed).collect(),
-        dimmed: Some(Remedy { luminaire: "A @ row-1 #1".into(), ugr: 16.2, shift: None }),
-        moved: Some(Remedy { luminaire: "A @ row-1 #1".into(), ugr: 17.3, shift: Some(Shift::Left) }),
+        dimmed: Some(Remedy { luminaire: "A @ row-1 #1".into(), ugr: 16.2, shift: None, mirror: None }),
+        moved: Some(Remedy {
+            luminaire: "A @ row-1 #1".into(),
+            ugr: 17.3,
+            shift: Some(Shift::Left),
+            mirror: None,
+        }),
     }
 }
 

@@ -19,13 +19,16 @@ use super::highlights::{self, Bundle};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
 use super::{PARTS, Part, Prepared, Sheet, lifted, turn};
 use crate::field::LuminanceField;
-use crate::query::{Ray, Receiver};
+use crate::query::{Kernel, Ray, Receiver};
 use crate::rng::{Rng, Stratified};
 use crate::scene::BodiesMet;
 use crate::sphere;
 
 /// Steps after which a walk is cut and counted: only a sealed cavity without absorption gets here.
 const MOST_STEPS: u32 = 100_000;
+
+/// Points of every opening in each block where a kernel has edges.
+const EDGE_POINTS: u32 = 16;
 
 /// Lobe rays of gather rays and walks survive as often as their lobe reflects …
 pub(super) const ANALOG: f64 = 1.0;
@@ -180,7 +183,8 @@ fn answer_receiver(
     desk.chances = chances;
 }
 
-/// Direct light = unshadowed light (exact) − what is kept off (sampled): no noise where nothing shades.
+/// Direct light = unshadowed light (exact) − what is kept off (sampled): no noise where nothing shades. By a kernel
+/// with edges, which may cut an opening, all of it is sampled.
 pub(super) fn direct(
     prepared: &Prepared,
     receiver: &Receiver,
@@ -193,9 +197,12 @@ pub(super) fn direct(
     let origin = lifted(prepared.scene, receiver.point, receiver.lift);
     let points = prepared.effort.opening_points;
     let exact = &prepared.unshadowed[first_row..first_row + receiver.kernels.len()];
+    let least = if receiver.kernels.iter().any(Kernel::has_edge) { EDGE_POINTS } else { 1 };
     for (index, source) in emitters.sources.iter().enumerate() {
         let own = source.mirror.is_none();
-        if own && exact.iter().all(|row| !(row[index] > 0.0)) || !emitters.may_show(source, origin) {
+        if own && exact.iter().all(|row| row.get(index).is_some_and(|lx| !(*lx > 0.0)))
+            || !emitters.may_show(source, origin)
+        {
             continue;
         }
         let considered = emitters.chance(source);
@@ -203,18 +210,18 @@ pub(super) fn direct(
             continue;
         }
         let sequence = Stratified::new(rng);
-        let samples = if source.is_point() { 1 } else { points };
+        let samples = if source.is_point() { 1 } else { points.max(least) };
         for sample in 0..samples {
             let u = if samples == 1 { rng.uniforms() } else { sequence.point(sample, rng) };
             let responds = |direction| receiver.kernels.iter().any(|kernel| kernel.response(direction) > 0.0);
             let Some(arrival) = emitters.arrival_if(source, origin, u, responds) else { continue };
             let passed = emitters.passed(source, origin, &arrival);
-            let lost = if own { passed - 1.0 } else { passed / considered };
-            if lost == 0.0 {
-                continue;
-            }
             let part = if own { Part::Direct } else { Part::Image };
             for (k, kernel) in receiver.kernels.iter().enumerate() {
+                let lost = if own && !kernel.has_edge() { passed - 1.0 } else { passed / considered };
+                if lost == 0.0 {
+                    continue;
+                }
                 let value =
                     lost * arrival.normal_lx * kernel.response(arrival.direction) / f64::from(samples);
                 out[(k * channels + source.channel) * PARTS + part as usize] += value;
@@ -222,7 +229,8 @@ pub(super) fn direct(
         }
         if own {
             for (k, row) in exact.iter().enumerate() {
-                out[(k * channels + source.channel) * PARTS + Part::Direct as usize] += row[index];
+                let exact_lx = row.get(index).copied().unwrap_or(0.0);
+                out[(k * channels + source.channel) * PARTS + Part::Direct as usize] += exact_lx;
             }
         }
     }

@@ -366,7 +366,8 @@ fn may_hide_rows(scene: &Scene, demand: &Demand) -> Vec<bool> {
         Kernel::Cylindrical { .. }
         | Kernel::Semicylindrical { .. }
         | Kernel::Hemispherical { .. }
-        | Kernel::Spherical => !returning.is_empty(),
+        | Kernel::Spherical
+        | Kernel::Zone(_) => !returning.is_empty(),
     };
     let receivers = demand.receivers.par_iter();
     receivers
@@ -374,7 +375,8 @@ fn may_hide_rows(scene: &Scene, demand: &Demand) -> Vec<bool> {
         .collect()
 }
 
-/// Unshadowed illuminance of every kernel row from every luminaire (images excluded).
+/// Unshadowed illuminance of every kernel row from every luminaire (images excluded); none where the kernel has
+/// edges, which is sampled with what is kept off.
 fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
     demand
         .receivers
@@ -384,6 +386,7 @@ fn unshadowed_rows(emitters: &Emitters, demand: &Demand) -> Vec<Vec<f64>> {
             let point = lifted(emitters.scene, receiver.point, receiver.lift);
             receiver.kernels.iter().map(move |kernel| {
                 let own = &emitters.sources[..emitters.scene.luminaires.len()];
+                let own = if kernel.has_edge() { &[] } else { own };
                 own.iter().map(|source| unshadowed(emitters, source, point, kernel)).collect()
             })
         })

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::areas::light_scene_index;
 use super::draft::{Draft, Located, locate};
 use super::viewpoints::indices;
+use crate::glare::index::parse;
 use crate::project::context::Context;
 use crate::project::schema::File;
 use crate::project::{GlareMap, LightScene};
@@ -22,6 +23,15 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         let section = section.get_ref();
         let light_scene = light_scene_index(section.light_scene.as_ref(), light_scenes, context);
         let indices = indices(&section.indices, context);
+        for name in &section.indices {
+            if parse(name.get_ref()).is_some_and(|index| index.zones.is_some()) {
+                let message = format!(
+                    "\"{}\" compares a task with what surrounds it, and the eyes of a map have none",
+                    name.get_ref()
+                );
+                context.error(&name.span(), message, "ask for it at a [[viewpoint]]");
+            }
+        }
         let span = section.rect.span();
         let rect = section.rect.get_ref();
         let finite = [&rect.origin, &rect.u, &rect.v].map(|at| context.finite(at.get_ref(), &at.span()));

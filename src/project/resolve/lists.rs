@@ -1,7 +1,7 @@
 //! CSV lists, read by column name, with the line of every mistake.
 
 use crate::project::context::Context;
-use crate::project::diagnostics::suggestion;
+use crate::project::diagnostics::{Place, suggestion};
 use crate::project::schema::At;
 
 /// A table with the columns asked for.
@@ -87,6 +87,11 @@ impl Table {
     /// Reports a mistake in a row.
     pub fn error(&self, row: &Row, message: String, hint: &str, context: &mut Context) {
         context.error_in(&self.file, &self.text, row.line, message, hint);
+    }
+
+    /// The place of a row, for mistakes that only a later step can find.
+    pub fn place(&self, row: &Row) -> Place {
+        Place::line(&self.file, &self.text, row.line)
     }
 
     /// Warns of a row.

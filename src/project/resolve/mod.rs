@@ -7,6 +7,7 @@ mod bodies;
 mod cad;
 mod cameras;
 mod draft;
+mod eyes;
 mod furniture;
 mod glare_maps;
 mod lights;
@@ -89,6 +90,7 @@ fn world(draft: Draft, palette: &Palette, context: &mut Context) -> Option<World
     match Scene::new_with(draft.mesh, draft.materials, draft.luminaires, context.simd) {
         Ok(scene) => {
             bodies::check(&scene, context);
+            eyes::check(&scene, &draft.rooms, &draft.viewpoints, context);
             Some(World {
                 scene,
                 rooms: draft.rooms,

@@ -8,10 +8,11 @@ use glam::{DMat3, DVec3};
 use super::areas::light_scene_index;
 use super::draft::{Draft, Located, locate};
 use super::lists::Table;
-use crate::glare::index::{INDICES, parse};
+use crate::glare::index::{self, INDICES, parse};
+use crate::glare::luminances::FIELD_HALF_ANGLES_DEG;
 use crate::project::context::Context;
 use crate::project::schema::{At, File, SweepSection, ViewpointSection};
-use crate::project::{LightScene, Viewpoint};
+use crate::project::{LightScene, Task, Viewpoint};
 use crate::sphere::{azimuth_tilt_deg, from_azimuth_tilt, rounded_deg};
 
 /// Directions one sweep may have.
@@ -23,7 +24,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         let span = section.span();
         let section = section.get_ref();
         let light_scene = light_scene_index(section.light_scene.as_ref(), light_scenes, context);
-        let indices = indices(&section.indices, context);
+        let mut indices = indices(&section.indices, context);
         if !context.finite(section.eye.get_ref(), &section.eye.span()) {
             continue;
         }
@@ -31,7 +32,12 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         let Some(lines) = directions(section, eye, &span, context) else {
             continue;
         };
-        let (directions, azimuths_deg) = lines.into_iter().unzip();
+        let (directions, azimuths_deg): (Vec<DVec3>, Vec<f64>) = lines.into_iter().unzip();
+        let Some(task) = task(section, eye, &directions, context) else { continue };
+        if section.task.is_some() || section.task_deg.is_some() {
+            let further = index::of_task().map(|index| index.key).filter(|key| !indices.contains(key));
+            indices.extend(further.collect::<Vec<_>>());
+        }
         let name_span = section.name.span();
         let viewpoint = Viewpoint {
             name: section.name.get_ref().clone(),
@@ -42,6 +48,8 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             indices,
             light_scene,
             highlights: section.highlights.as_ref().is_none_or(|wanted| *wanted.get_ref()),
+            task,
+            written: Some(context.place(&section.eye.span())),
         };
         let mut report = |context: &mut Context, message: String| {
             context.error(&name_span, message, "");
@@ -78,6 +86,8 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
                 indices: Vec::new(),
                 light_scene: None,
                 highlights: true,
+                task: Task::default(),
+                written: Some(table.place(row)),
             };
             let mut report = |context: &mut Context, message: String| {
                 table.error(row, message, "", context);
@@ -129,6 +139,40 @@ pub fn indices(names: &[At<String>], context: &mut Context) -> Vec<&'static str>
         }
     }
     keys
+}
+
+/// What is looked at. A task that no line of sight has before it is a mistake.
+fn task(section: &ViewpointSection, eye: DVec3, directions: &[DVec3], context: &mut Context) -> Option<Task> {
+    let mut task = Task::default();
+    if let Some(opening) = &section.task_deg {
+        task.opening_deg = *opening.get_ref();
+        let most_deg = 2.0 * FIELD_HALF_ANGLES_DEG[0];
+        if !(task.opening_deg > 0.0 && task.opening_deg < most_deg) {
+            let message = format!("task_deg must lie between 0 and {most_deg}, found {}", task.opening_deg);
+            let hint = format!(
+                "the full opening angle of the task's cone; its surround ends at a cone of {most_deg}°"
+            );
+            context.error(&opening.span(), message, &hint);
+            return None;
+        }
+    }
+    if let Some(place) = &section.task {
+        if !context.finite(place.get_ref(), &place.span()) {
+            return None;
+        }
+        let at = DVec3::from_array(*place.get_ref());
+        if !((at - eye).length() > 1e-9) {
+            context.error(&place.span(), "the task lies in the eye", "task = [x, y, z], the point looked at");
+            return None;
+        }
+        task.at = Some(at);
+        if !directions.iter().any(|gaze| gaze.dot(at - eye) > 0.0) {
+            let hint = "it must lie within 90° of the line of sight: turn that, or move the task";
+            context.error(&place.span(), "the task lies behind the eye", hint);
+            return None;
+        }
+    }
+    Some(task)
 }
 
 /// Lines of sight with their azimuths in degrees: those of a sweep as it is written where nothing else sets its

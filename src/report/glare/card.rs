@@ -83,7 +83,10 @@ pub fn remedies(card: &Card, ugr: &Interval, lang: Lang) -> Vec<String> {
     // Only what shows in the printed digit is worth a sentence.
     let helps = |remedy: &&Remedy| then(remedy) != now && remedy.ugr < ugr.value;
     if let Some(remedy) = card.dimmed.as_ref().filter(helps) {
-        lines.push(phrase(lang, Term::CardDimmed, &[&remedy.luminaire, &then(remedy), &now]));
+        lines.push(match &remedy.mirror {
+            None => phrase(lang, Term::CardDimmed, &[&remedy.luminaire, &then(remedy), &now]),
+            Some(mirror) => phrase(lang, Term::CardImage, &[&remedy.luminaire, mirror, &then(remedy), &now]),
+        });
     }
     if let Some(remedy) = card.moved.as_ref().filter(helps) {
         let way = word(

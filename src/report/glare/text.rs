@@ -4,7 +4,7 @@ use super::super::number::{figures, fixed};
 use super::super::words::Lang;
 use super::super::xml::{printable, put};
 use super::{Evaluated, right_and_up_deg};
-use crate::glare::index::Reading;
+use crate::glare::index::{Reading, parse};
 use crate::glare::source::positioned_sum;
 
 const LANG: Lang = Lang::En;
@@ -19,7 +19,9 @@ pub fn images_text(images: &[Evaluated]) -> String {
 fn block(image: &Evaluated) -> String {
     let mut text = format!("{}\n", printable(&image.file));
     let glare = &image.glare;
-    for reading in &glare.readings {
+    // Those of a task have a line of their own.
+    let of_view = |reading: &&Reading| parse(reading.key).is_none_or(|index| index.zones.is_none());
+    for reading in glare.readings.iter().filter(of_view) {
         let (value, remark) = match &reading.value {
             Ok(value) => (shown(reading, *value), reading.notes.join("; ")),
             Err(undefined) => ("-".to_owned(), undefined.reason.clone()),

@@ -178,6 +178,7 @@ pub fn symbol(lang: Lang, quantity: Quantity, statistic: Statistic) -> Symbol {
         Quantity::Hemispherical => word(lang, Term::IndexHemispherical),
         Quantity::Spherical => word(lang, Term::IndexSpherical),
         Quantity::Declared(Property::Pulsation) => word(lang, Term::IndexPulsation),
+        Quantity::OfView { .. } if quantity.is_luminance_ratio() => "",
         Quantity::OfView { key, .. } => key.split_once('_').map_or("", |(_, index)| index),
         Quantity::Luminance { .. }
         | Quantity::Modelling
@@ -222,6 +223,7 @@ fn letter(quantity: Quantity, lang: Lang) -> String {
         Quantity::ColourRendering => "R",
         Quantity::Luminance { .. } => "L",
         Quantity::DiscomfortIndex => "M",
+        Quantity::OfView { key, .. } if quantity.is_luminance_ratio() => key,
         Quantity::OfView { key, .. } => key.split_once('_').map_or(key, |(letter, _)| letter),
         Quantity::Declared(Property::Pulsation) => word(lang, Term::LetterPulsation),
         Quantity::Declared(property) => property.key(),

@@ -223,6 +223,37 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "position index Levin (Iwata–Osterhaus below the line of sight)",
         "индекс позиции по Левину (ниже линии зрения – Ивата–Остерхаус)",
     ),
+    (
+        "the task is a cone of {}° about the line of sight, its surround up to {}° and the far field up to {}° from its middle",
+        "рабочее поле – конус {}° вокруг линии зрения, его окружение – до {}°, периферия – до {}° от середины поля",
+    ),
+    (
+        "the task is a cone of {}° at {}° from the line of sight, its surround up to {}° and the far field up to {}° from its middle",
+        "рабочее поле – конус {}° под углом {}° к линии зрения, его окружение – до {}°, периферия – до {}° от середины поля",
+    ),
+    (
+        "what of the zones lies behind the plane of the eye is left out",
+        "то, что лежит позади плоскости зрачка, в зоны не входит",
+    ),
+    ("the task lies behind the eye", "рабочее поле лежит позади глаза"),
+    ("the surround of the task is dark", "окружение рабочего поля тёмное"),
+    ("the far field is dark", "периферия поля зрения тёмная"),
+    (
+        "sources with a size count by their parts, each at its own angle, within about 2 %",
+        "источники, имеющие размер, учтены по частям, каждая под своим углом, с погрешностью около 2 %",
+    ),
+    (
+        "{} source(s) outside {}° to {}°, where the form holds",
+        "источников: {} – вне пределов {}°…{}°, в которых формула действительна",
+    ),
+    (
+        "{} % of the light of sources that count in parts lies outside {}° to {}°, where the form holds",
+        "{} % света источников, учтённых по частям, приходит вне пределов {}°…{}°, в которых формула действительна",
+    ),
+    (
+        "what a source shows within 0.1° of the line of sight is looked at, does not stray and is left out",
+        "то, что источник показывает ближе 0,1° к линии зрения, рассматривается, не рассеивается и не учтено",
+    ),
     ("a source lies within 0.1° of the line of sight", "источник лежит в пределах 0,1° от линии зрения"),
     (
         "a point source has no luminance, for which this index asks",
@@ -236,7 +267,7 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "the ground's reflectance and mean horizontal illuminance are not given",
         "коэффициент отражения и средняя горизонтальная освещённость земли не заданы",
     ),
-    ("the road's luminance is not given", "яркость дорожного покрытия не задана"),
+    ("the road's mean luminance L_av is not given", "средняя яркость дорожного покрытия L_av не задана"),
     ("{} source(s) beyond 60° are left out", "источников далее 60°: {} – исключены"),
     (
         "{} source(s) under {} sr; DGI was made for windows",

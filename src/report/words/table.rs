@@ -167,6 +167,7 @@ pub enum Term {
     Share,
     MoreSources,
     CardDimmed,
+    CardImage,
     CardMoved,
     CardGuide,
     CardPicture,
@@ -400,14 +401,19 @@ pub const TERMS: [(Term, &str, &str); COUNT] = [
         "Больше всего поможет вполовину приглушить {}: UGR {} вместо {}.",
     ),
     (
+        Term::CardImage,
+        "Only the image of {} in {} glares: turn or cover that surface, or dim the luminaire to half, which would help most: UGR {} in place of {}.",
+        "Слепит лишь отражение {} в {}: повернуть или закрыть эту поверхность или вполовину приглушить светильник, что поможет больше всего: UGR {} вместо {}.",
+    ),
+    (
         Term::CardMoved,
         "Shifting {} by {} m {} would help most: UGR {} in place of {}.",
         "Больше всего поможет сдвинуть {} на {} м {}: UGR {} вместо {}.",
     ),
     (
         Term::CardGuide,
-        "A guide only: the background is left as it is, and what may be in the way is not looked at.",
-        "Лишь ориентир: фон оставлен прежним, возможные препятствия не учтены.",
+        "A guide only: the background is left as it is, and what may hide a shifted luminaire is not looked at.",
+        "Лишь ориентир: фон оставлен прежним; что может заслонить сдвинутый светильник, не учтено.",
     ),
     (
         Term::CardPicture,

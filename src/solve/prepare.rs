@@ -293,11 +293,8 @@ fn collect(common: &Links, side: usize, FirstLight { mut direct, mut rng, .. }: 
         // What lobes reflect of luminaires is looked for about their highlights too.
         let origin = at.origin(scene, same_side);
         highlights.about(emitters, origin, |direction| facing.dot(direction), &mut bundles);
-        let aimed = if link % GLINTS == 0 && !bundles.is_empty() {
-            Some(highlights::draw(&bundles, rng.uniforms()))
-        } else {
-            None
-        };
+        let is_aimed = link % GLINTS == 0 && !bundles.is_empty();
+        let aimed = is_aimed.then(|| highlights::draw(&bundles, rng.uniforms()));
         for (number, direction) in aimed.into_iter().chain([direction]).enumerate() {
             let cosine = facing.dot(direction).max(0.0) * FRAC_1_PI;
             let by_aim = highlights::density(&bundles, direction) / f64::from(GLINTS);

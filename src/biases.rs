@@ -28,6 +28,16 @@ pub(crate) fn add(
             Some(crate::emitters::TOLERANCE),
         );
     }
+    let found_by_chance = match settings.method {
+        Method::Links => None,
+        Method::Path => Some("Path tracing finds small bright places by chance."),
+        Method::Local | Method::Double => {
+            Some("Local estimation finds small bright places and luminous surfaces by chance.")
+        }
+    };
+    if let Some(what) = found_by_chance {
+        note(what, "value and interval may both lack what is rare; the method links aims at it".into(), None);
+    }
     let specular = (0..scene.mesh.triangles.len() as u32).any(|t| scene.bsdf(t).specular(1.0).is_some());
     if specular {
         let share = flux::omitted_share(answers);
@@ -43,7 +53,7 @@ pub(crate) fn add(
         if by_two || shines {
             note(
                 "Light of luminaires that comes by two or more mirrors, one after the other, and that of luminous surfaces by any mirror, is found by chance.",
-                "intervals may miss what is rare; at points and areas their upper ends allow for what two mirrors send there straight"
+                "intervals may miss what is rare; at points and areas their upper ends allow for what they send there straight"
                     .into(),
                 None,
             );

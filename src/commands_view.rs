@@ -29,8 +29,8 @@ struct Wanted {
 
 /// What the pictures of one world are taken from.
 enum Source<'w> {
-    Field(Exposure<'w>, Detail),
-    Blocks(Prepared<'w>, u32),
+    Field(Box<Exposure<'w>>, Detail),
+    Blocks(Box<Prepared<'w>>, u32),
 }
 
 /// Runs the command.
@@ -178,14 +178,15 @@ fn take_all(
         }
         let source = if let Some(blocks) = arguments.blocks {
             let effort = Effort { gather: 1, ..Effort::default() };
-            Source::Blocks(prepare(&world.scene, &demand, Method::Links, effort, seed), blocks)
+            let prepared = prepare(&world.scene, &demand, Method::Links, effort, seed);
+            Source::Blocks(Box::new(prepared), blocks)
         } else {
             let exposure = match stored[index].take() {
                 Some(stored) => from_store(&world.scene, stored),
                 None => expose(&world.scene, seed),
             };
             let detail = if arguments.preview { Detail::Stored } else { Detail::Exact };
-            Source::Field(exposure, detail)
+            Source::Field(Box::new(exposure), detail)
         };
         for wanted in here {
             shots.push(take(project, world, wanted, &source, arguments.run.quiet));

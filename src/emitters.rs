@@ -25,7 +25,7 @@ use crate::photometry::{Met, Opening, Shine};
 use crate::scene::Scene;
 
 pub use direct::{TOLERANCE, contour, unshadowed};
-pub use glimpsed::glimpsed_from;
+pub use glimpsed::Lookout;
 pub use glints::{Glint, GlintPiece, glints_from};
 pub use images::planes;
 pub use mirror::{Glimpse, Mirror};

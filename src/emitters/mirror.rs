@@ -163,15 +163,41 @@ impl Mirror {
     /// Where the lines from all of `here` to all of `image` meet the plane: those within the hull of the one
     /// and of the other meet it within the box of these.
     pub fn glimpse(&self, here: &[DVec3; 4], image: &[DVec3; 4]) -> Glimpse {
+        let met = match self.crossed(here, image) {
+            Ok(met) => met,
+            Err(glimpse) => return glimpse,
+        };
+        if self.windows.iter().any(|window| window.holds(&met)) {
+            return Glimpse::All(self.corners(met));
+        }
+        let apart = self.pieces.iter().all(|piece| piece.is_apart_from(&met));
+        if apart { Glimpse::Nothing } else { Glimpse::Some }
+    }
+
+    /// Corners of a rectangle that holds all places of its triangles where lines from all of `here` to all of
+    /// `image` meet them, m, if the plane lies between.
+    pub fn shown(&self, here: &[DVec3; 4], image: &[DVec3; 4]) -> Option<[DVec3; 4]> {
+        let Area { low, high } = self.crossed(here, image).ok()?;
+        let Area { low: first, high: last } = self.bounds;
+        let within = |x: f64, k: usize| x.clamp(first[k], last[k]);
+        let part = Area {
+            low: std::array::from_fn(|k| within(low[k], k)),
+            high: std::array::from_fn(|k| within(high[k], k)),
+        };
+        Some(self.corners(part))
+    }
+
+    /// The box in which lines from all of `here` to all of `image` meet the plane, where it lies between.
+    fn crossed(&self, here: &[DVec3; 4], image: &[DVec3; 4]) -> Result<Area, Glimpse> {
         let heights = |points: &[DVec3; 4]| points.map(|p| p.dot(self.normal) - self.offset_m);
         let (from, to) = (heights(here), heights(image));
         let all = |heights: &[f64; 4], sign: f64| heights.iter().all(|height| sign * height > 0.0);
         let beyond = [1.0, -1.0].map(|sign| [all(&from, sign), all(&to, sign)]);
         if beyond.contains(&[true, true]) {
-            return Glimpse::Nothing;
+            return Err(Glimpse::Nothing);
         }
         if !(beyond == [[true, false], [false, true]] || beyond == [[false, true], [true, false]]) {
-            return Glimpse::Some;
+            return Err(Glimpse::Some);
         }
         let [here, image] = [here, image].map(|points| points.map(|p| self.place(p)));
         let mut met = Area::NOTHING;
@@ -181,15 +207,13 @@ impl Mirror {
                 met = met.with([a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share]);
             }
         }
-        if self.windows.iter().any(|window| window.holds(&met)) {
-            let [u, v] = self.axes;
-            let at = |x: f64, y: f64| u * x + v * y + self.normal * self.offset_m;
-            let Area { low, high } = met;
-            let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
-            return Glimpse::All(corners.map(|[x, y]| at(x, y)));
-        }
-        let apart = self.pieces.iter().all(|piece| piece.is_apart_from(&met));
-        if apart { Glimpse::Nothing } else { Glimpse::Some }
+        Ok(met)
+    }
+
+    fn corners(&self, Area { low, high }: Area) -> [DVec3; 4] {
+        let [u, v] = self.axes;
+        let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
+        corners.map(|[x, y]| u * x + v * y + self.normal * self.offset_m)
     }
 
     /// Works out everything that follows from the triangles.
@@ -306,6 +330,7 @@ mod tests {
                 0.5 * width * width,
             );
             let glimpse = plane.glimpse(&here, &image);
+            let shown = plane.shown(&here, &image);
             let mut seen = [0; 2];
             for _ in 0..200 {
                 let [s, t, p, q] = rng.uniforms();
@@ -317,7 +342,9 @@ mod tests {
                 let hit = hit.filter(|hit| hit.distance_m < reach_m);
                 assert_eq!(met.map(|(_, triangle)| triangle), hit.map(|hit| hit.triangle));
                 seen[usize::from(met.is_some())] += 1;
-                if let (Glimpse::All(corners), Some((distance_m, _))) = (glimpse, met) {
+                let whole = if let Glimpse::All(corners) = glimpse { Some(corners) } else { None };
+                for corners in [whole, shown].into_iter().flatten() {
+                    let Some((distance_m, _)) = met else { continue };
                     let at = plane.place(from + (to - from) * (distance_m / reach_m));
                     let [low, high] = [corners[0], corners[2]].map(|corner| plane.place(corner));
                     assert!((0..2).all(|k| (low[k] - 1e-9..high[k] + 1e-9).contains(&at[k])));

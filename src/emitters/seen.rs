@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::Emitters;
 use super::glints::{Glint, glints_from};
 use super::shining::{Shining, shining_from};
+use super::{Arrival, Emitters};
 use crate::estimate::{Estimate, Pair};
 use crate::rng::{Rng, Stratified};
 
@@ -14,7 +14,7 @@ pub(super) const REPLICATES: usize = 16;
 const POINTS: u32 = 32;
 /// Where less than this share is visible, so few points hit it that their spread says little: it is sampled
 /// anew, by this many times the points.
-const LITTLE: (f64, u32) = (0.25, 8);
+pub(super) const LITTLE: (f64, u32) = (0.25, 8);
 /// Pieces of an opening along each of its two parameters.
 const PIECES: usize = 8;
 
@@ -116,27 +116,47 @@ fn sampled(emitters: &Emitters, index: usize, eye: DVec3, rng: &mut Rng, points:
     if !emitters.may_show(source, eye) {
         return None;
     }
+    let points = if source.is_point() { 1 } else { points };
+    let mut sequence = Stratified::new(rng);
+    let passed = |arrival: &Arrival| emitters.passed(source, eye, arrival);
+    by_points(emitters, index, eye, points, passed, |replicate, point| {
+        if point == 0 && replicate > 0 {
+            sequence = Stratified::new(rng);
+        }
+        if points == 1 { [0.5, 0.5] } else { sequence.point(point, rng) }
+    })
+}
+
+/// A source by points of its opening (`place`: of which replicate, and the point's number in it), and what of the
+/// light from there has `passed`.
+pub(super) fn by_points(
+    emitters: &Emitters,
+    index: usize,
+    eye: DVec3,
+    points: u32,
+    passed: impl Fn(&Arrival) -> f64,
+    mut place_of: impl FnMut(usize, u32) -> [f64; 2],
+) -> Option<Seen> {
+    let source = &emitters.sources[index];
     let centre = source.position - eye;
     let mut solid = Vec::with_capacity(REPLICATES);
     let mut light = Vec::with_capacity(REPLICATES);
     let mut whole = 0.0;
     let mut passed_sum = 0.0;
     let mut vector = DVec3::ZERO;
-    let points = if source.is_point() { 1 } else { points };
     let place = source.place(eye);
     let mut cells = [(DVec3::ZERO, 0.0, 0.0); PIECES * PIECES];
-    for _ in 0..REPLICATES {
-        let sequence = Stratified::new(rng);
+    for replicate in 0..REPLICATES {
         let (mut solid_sr, mut normal_lx) = (0.0, 0.0);
         for point in 0..points {
-            let u = if points == 1 { [0.5, 0.5] } else { sequence.point(point, rng) };
+            let u = place_of(replicate, point);
             let Some(shine) = source.opening.shine(place, u) else { continue };
             let away = place - shine.at;
             let projected_m2 = source.opening.projected_area_m2(away.normalize_or_zero());
             let element_sr = shine.weight * projected_m2 / away.length_squared();
             whole += element_sr;
             let Some(arrival) = emitters.arrival_from(source, eye, shine, |_| true) else { continue };
-            let passed = emitters.passed(source, eye, &arrival);
+            let passed = passed(&arrival);
             passed_sum += passed;
             // Behind a pane or in a mirror the source keeps its solid angle and loses luminance.
             solid_sr += if passed > 0.0 { element_sr } else { 0.0 };

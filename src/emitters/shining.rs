@@ -63,6 +63,9 @@ pub(super) fn shining_coarsely(emitters: &Emitters, eye: DVec3, seed: u64) -> Ve
 /// [`shining_from`] with pieces of at most `piece_sr`.
 pub fn shining_in_pieces(emitters: &Emitters, eye: DVec3, seed: u64, piece_sr: f64) -> Vec<Shining> {
     let mut found = Vec::new();
+    if !emitters.scene.channels.iter().any(|channel| matches!(channel, Channel::Surfaces { .. })) {
+        return found;
+    }
     for mirror in std::iter::once(None).chain((0..emitters.mirrors.len()).map(Some)) {
         found.extend(shining_in(emitters, mirror, eye, seed, piece_sr));
     }

@@ -16,6 +16,7 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 
+pub use self::wide::Course;
 use self::wide::{EMPTY, LANES, LEAF, Node, Pack, Prepared, WIDTH, collapse, meet, prepare, slabs};
 use super::mesh::Mesh;
 use crate::material::{Bsdf, Material, Pane};
@@ -154,7 +155,13 @@ impl Tracer {
 
     /// The nearest triangle along `direction` (unit), surfaces in `blind` left out.
     pub fn closest(&self, origin: DVec3, direction: DVec3, blind: &[u32]) -> Option<Hit> {
-        let ray = prepare(origin, self.centre, direction);
+        self.closest_on(origin, &Course::new(direction), blind)
+    }
+
+    /// [`Tracer::closest`] of one of many rays along a direction.
+    #[inline]
+    pub fn closest_on(&self, origin: DVec3, course: &Course, blind: &[u32]) -> Option<Hit> {
+        let (ray, direction) = (course.from(origin, self.centre), course.direction);
         #[cfg(target_arch = "x86_64")]
         if self.simd {
             // SAFETY: `simd` is set only where AVX2 was detected.

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::emitters::{Emitters, SeenPiece, Sighted, glimpsed_from, sighted_from};
+use crate::emitters::{Emitters, Lookout, SeenPiece, Sighted, sighted_from};
 use crate::estimate::Estimate;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
@@ -93,8 +93,8 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
 /// Why no eye of a map has luminances of task and surround; its project may not ask for them.
 const NO_TASK: &str = "the eyes of a map have no task";
 
-/// The usual effort of a swift map.
-pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 384, rough: 0.012, walks: 32 };
+/// The usual effort of a swift map. Rays by powers of two: Sobol points fill their strata only so.
+pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 512, rough: 0.012, walks: 32 };
 
 /// All maps of a project.
 pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {
@@ -165,11 +165,12 @@ pub fn swift_eyes(
     let emitters = prepared.emitters();
     let alpha = 1.0 - project.accuracy.confidence;
     let convention = Convention::default();
+    let lookout = Lookout::new(emitters, seed);
     let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
         if let Some(shut) = shut_eye(world, map, position) {
             return shut;
         }
-        let sighted = glimpsed_from(emitters, position, seed);
+        let sighted = lookout.from(position);
         let views = sights.iter().enumerate().map(|(direction, &gaze)| {
             let of_replicates: Vec<f64> =
                 indirect[number].chunks_exact(sights.len()).map(|lx| lx[direction]).collect();

@@ -27,6 +27,7 @@ mod opening;
 mod opening_sizes;
 mod places;
 mod planes;
+mod spherical_rectangle;
 mod symmetry;
 mod table;
 mod text;

@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use super::body::Body;
 use super::face::{Face, Onlooker};
+use super::spherical_rectangle::SphericalRectangle;
 
 /// The light-emitting surface of a luminaire, centred on its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,13 +165,20 @@ impl Opening {
     /// A point of the opening that shines on `place` (luminaire frame); `None` where nothing of it is
     /// seen from there.
     ///
-    /// Flat: uniform by area, weight 1. A body with the visible area V(p), projected along the direction
+    /// Flat: uniform by area, weight 1; a rectangle from near by uniform in the solid angle Ω that it fills, so that
+    /// a point has the weight Ω d²/(A cos θ) and light at its edge does not scatter without limit. A body with the visible area V(p), projected along the direction
     /// w of the place p from its centre: uniform in that, so that the weight of a point with normal n
     /// that sends ω to the place is V · (n·ω) / ((n·w) A_p(ω)).
     #[inline]
     pub fn shine(&self, place: DVec3, u: [f64; 2]) -> Option<Shine> {
         match self.body() {
-            None => Some(Shine { at: self.plane_point(u), weight: 1.0 }),
+            None => Some(self.near(place).map_or_else(
+                || Shine { at: self.plane_point(u), weight: 1.0 },
+                |near| {
+                    let at = near.point(u);
+                    Shine { at, weight: near.weight(at) }
+                },
+            )),
             Some(body) => {
                 let eye = Onlooker::at(place);
                 let seen_m2 = body.visible_m2(eye);
@@ -213,10 +221,11 @@ impl Opening {
             let t = -origin.dot(normal) / direction.dot(normal);
             let met = t > 0.0 && t.is_finite() && plane.covers(origin + direction * t);
             let projected_m2 = two_sided_m2(&plane, direction);
-            return (met && plane.plane_area_m2() > 0.0).then_some(Met {
+            let weight = || self.near(origin).map_or(1.0, |near| near.weight(origin + direction * t));
+            return (met && plane.plane_area_m2() > 0.0).then(|| Met {
                 distance_m: t,
                 projected_m2,
-                weight: 1.0,
+                weight: weight(),
             });
         }
         let body = self.body()?;
@@ -227,6 +236,15 @@ impl Opening {
         let seen_m2: f64 = body.visible_m2(Onlooker::at(origin)).iter().sum();
         let weight = body.weight(seen_m2, normal, origin, -direction);
         Some(Met { distance_m, projected_m2: body.projected_area_m2(-direction), weight })
+    }
+
+    /// A flat rectangle as it fills the view from a place near by.
+    #[inline]
+    fn near(&self, place: DVec3) -> Option<SphericalRectangle> {
+        match self.plane()? {
+            Face::Plane { centre, a, b, round: false, .. } => SphericalRectangle::near(place, centre, a, b),
+            _ => None,
+        }
     }
 
     /// The area-uniform point of a flat opening; the origin for a point.

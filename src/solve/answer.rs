@@ -77,6 +77,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
     let mut values = vec![0.0; demand.rows() * channels * PARTS];
     let mut desk = Desk::new(channels);
     for (index, receiver) in demand.receivers.iter().enumerate() {
+        desk.chances.clone_from(prepared.chances.get(index).unwrap_or(&Chances::default()));
         let row = prepared.first_rows[index];
         let span = row * channels * PARTS..(row + receiver.kernels.len()) * channels * PARTS;
         let mut rng = Rng::new(prepared.seed, stream, index as u64);
@@ -126,10 +127,9 @@ fn answer_receiver(
     let sequence = Stratified::new(rng);
     let (emitters, patches) = (&prepared.emitters, field(prepared).patches());
     let mut bundles = std::mem::take(&mut desk.bundles);
-    let mut chances = std::mem::take(&mut desk.chances);
+    let chances = std::mem::take(&mut desk.chances);
     let response = |direction| kernels.iter().map(|kernel| kernel.response(direction)).sum();
     prepared.highlights.about(emitters, origin, response, &mut bundles);
-    prepared.beacons.about(origin, response, kernels.len(), None, &mut chances);
     let guided = if bundles.is_empty() { 0 } else { effort.highlights };
     let aimed = if chances.is_empty() { 0 } else { effort.beacons };
     let aimed_walks = aimed.min(walks);
@@ -379,7 +379,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
     }
     // The field's luminance here is albedo/π times what comes: ∫ scattered · L dω = π L̃/albedo.
     let known = PI * stored(prepared, &here).iter().sum::<f64>() / albedo;
-    prepared.beacons.about(here.point, scattered, 1, Some(known), &mut chances);
+    prepared.beacons.about(here.point, scattered, 1, Some(known), None, &mut chances);
     let patches = field(prepared).patches();
     let looks = effort.looks.max(1);
     let guided = u32::from(!bundles.is_empty());

@@ -12,8 +12,11 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::covered::place;
-use super::look::{Landing, Sight, Way};
-use crate::field::Patches;
+use super::look::{Landing, Sight, Way, look};
+use crate::emitters::Emitters;
+use crate::field::{LuminanceField, Patches};
+use crate::query::Kernel;
+use crate::rng::Rng;
 use crate::scene::Scene;
 use crate::sphere;
 
@@ -29,6 +32,14 @@ const MOST: usize = 32;
 const RARE: f64 = 2.0;
 /// Rays by which a luminous side looks for what lies before it.
 const BEFORE: u32 = 8;
+/// Places of a beacon by which a receiver finds out how much of it is seen …
+const PLACES: u32 = 32;
+/// … and the share that is believed to be seen where none of them is.
+const UNSEEN: f64 = 0.1;
+/// First item of the random numbers of these looks, in the field's stream.
+pub(super) const ITEM: u64 = 1 << 42;
+/// Looks by which a receiver finds out how much other light there is.
+const LOOKS: u32 = 64;
 /// Not a beacon.
 const NONE: u32 = u32::MAX;
 
@@ -87,8 +98,17 @@ pub(super) struct Branch {
     pub chance: f64,
 }
 
+/// What a receiver sees of beacons and of all else.
+#[derive(Debug)]
+pub(super) struct Seen {
+    /// Share of each beacon.
+    shares: Vec<f64>,
+    /// Light of all else, the receiver's responses summed.
+    others: f64,
+}
+
 /// The chance of each beacon to be aimed at from one place.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Chances {
     /// Probability summed up to each beacon; empty where nothing is aimed at.
     up_to: Vec<f64>,
@@ -133,24 +153,27 @@ impl Beacons {
 
     /// Fills `chances` with the chances of beacons as seen from `origin`; with none where rays that follow
     /// `response` find their light well enough. The response is the sum of `kernels`, each of integral π;
-    /// `known` is ∫ response · L dω of all light, where the field knows it.
+    /// `known` is ∫ response · L dω of all light, where the field knows it; `seen` what is seen from
+    /// there ([`Beacons::seen`]), where that is known.
     pub(super) fn about(
         &self,
         origin: DVec3,
         response: impl Fn(DVec3) -> f64,
         kernels: usize,
         known: Option<f64>,
+        seen: Option<&Seen>,
         chances: &mut Chances,
     ) {
         chances.clear();
         if self.list.is_empty() {
             return;
         }
-        let (mut total, mut squares) = (0.0, 0.0);
+        let (mut total, mut squares, mut chance) = (0.0, 0.0, 0.0);
         let (mut emitted, mut emitted_squares) = (0.0, 0.0);
-        for beacon in &self.list {
+        for (number, beacon) in self.list.iter().enumerate() {
+            let share = seen.map_or(1.0, |seen| seen.shares[number]);
             let mut light = 0.0;
-            for (place, share) in beacon.places {
+            for (place, part) in beacon.places {
                 let away = place - origin;
                 let squared = away.length_squared();
                 let towards = away / squared.sqrt();
@@ -158,22 +181,24 @@ impl Beacons {
                 if facing > 0.0 {
                     // Near a beacon a place says little: its solid angle is at most about 2π.
                     let solid_angle = facing * beacon.area_m2 / (squared + beacon.area_m2 / TAU);
-                    light += share * response(towards).max(0.0) * solid_angle * beacon.luminance;
+                    light += part * response(towards).max(0.0) * solid_angle * beacon.luminance;
                 }
             }
             if light > 0.0 && light.is_finite() {
+                chance += light * share.max(UNSEEN);
+                let light = share * light;
                 total += light;
                 squares += light * beacon.luminance;
                 let own = light * beacon.emitted / beacon.luminance;
                 emitted += own;
                 emitted_squares += own * beacon.emitted;
             }
-            chances.up_to.push(total);
+            chances.up_to.push(chance);
         }
         // Rays by a response of integral nπ have density R/nπ: their mean square is ∫ nπ R L².
         let whole = PI * kernels as f64;
         // Hidden beacons add nothing to what is known, which may therefore be less than they seem to give.
-        let guess = total + whole * self.others;
+        let guess = total + seen.map_or(whole * self.others, |seen| seen.others);
         let mean = known.map_or(guess, |known| known.min(guess));
         let is_rare = |squares: f64, mean: f64| squares > 0.0 && whole * squares > RARE * mean * mean;
         if !(is_rare(squares, mean) || is_rare(emitted_squares, emitted)) {
@@ -181,8 +206,64 @@ impl Beacons {
             return;
         }
         for up_to in &mut chances.up_to {
-            *up_to /= total;
+            *up_to /= chance;
         }
+    }
+
+    /// What is seen from `origin`: of each beacon by a few of its places, and by a few looks the light of all else,
+    /// ∫ R L dω with R the sum of the responses of `kernels`.
+    pub(super) fn seen(
+        &self,
+        emitters: &Emitters,
+        field: &LuminanceField,
+        origin: DVec3,
+        kernels: &[Kernel],
+        rng: &mut Rng,
+    ) -> Seen {
+        let (scene, patches) = (emitters.scene, field.patches());
+        let mut sight = Sight::new(scene.channels.len());
+        let mut others = 0.0;
+        for number in 0..LOOKS {
+            let direction = kernels[number as usize % kernels.len()].sample(rng.uniforms());
+            let density =
+                kernels.iter().map(|kernel| kernel.pdf(direction)).sum::<f64>() / kernels.len() as f64;
+            let response: f64 = kernels.iter().map(|kernel| kernel.response(direction)).sum();
+            if !(density > 0.0) {
+                continue;
+            }
+            look(emitters, origin, direction, 1.0, rng, &mut sight);
+            for landing in sight.landings.iter() {
+                let side = patches.side_at(landing.triangle, landing.barycentric, landing.front);
+                if self.place[side] == NONE {
+                    let stored: f64 = field.at(side).iter().sum();
+                    others += response / density * landing.weight * stored / f64::from(LOOKS);
+                }
+            }
+        }
+        let is_seen = |beacon: &Beacon, number: u32| {
+            let members = &self.bright[beacon.first..beacon.last];
+            let part = (f64::from(number) + 0.5) / f64::from(PLACES);
+            let wanted = part * members[members.len() - 1].up_to;
+            let member = members.partition_point(|bright| bright.up_to <= wanted).min(members.len() - 1);
+            let u = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|step| f64::from(number) * step % 1.0);
+            let at = place(patches, members[member].side, u);
+            let towards = at.origin(scene, true) - origin;
+            let distance_m = towards.length();
+            let direction = towards / distance_m;
+            at.normal.dot(direction) < 0.0
+                && scene.tracer.transmittance(origin, direction, distance_m - scene.tracer.offset_m(), &[])
+                    > 0.0
+        };
+        let share = |beacon: &Beacon| {
+            let count = (0..PLACES).filter(|&number| is_seen(beacon, number)).count();
+            count as f64 / f64::from(PLACES)
+        };
+        Seen { shares: self.list.iter().map(share).collect(), others }
+    }
+
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty()
     }
 
     /// Draws a beacon and a point on it; the direction to it, and the patch side.
@@ -384,11 +465,8 @@ impl Chances {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emitters::Emitters;
     use crate::geometry::mesh::Mesh;
     use crate::material::{Bsdf, Material};
-    use crate::rng::Rng;
-    use crate::solve::look::look;
 
     /// A dark floor, and over it two tiles that shine down, one brighter.
     fn tiles() -> Scene {
@@ -424,7 +502,7 @@ mod tests {
         let beacons = Beacons::new(&scene, &patches, |_| 0.0);
         let origin = DVec3::new(0.2, 0.1, 0.3);
         let mut chances = Chances::default();
-        beacons.about(origin, |direction| direction.z.max(0.0), 1, None, &mut chances);
+        beacons.about(origin, |direction| direction.z.max(0.0), 1, None, None, &mut chances);
         assert!(!chances.is_empty() && beacons.list.len() > 1);
         let (mut rng, mut sight) = (Rng::new(1, 2, 3), Sight::new(scene.channels.len()));
         let weight = |direction: DVec3| direction * direction.x.max(0.0);

@@ -16,6 +16,9 @@ use super::answer::{ANALOG, Desk, see, walk};
 use super::look::{Landing, Sight, add_emission, look};
 use super::{Prepared, highlights};
 use crate::estimate::Estimate;
+use crate::geometry::mesh::Surface;
+use crate::geometry::trace::Course;
+use crate::material::Bsdf;
 use crate::rng::{Rng, Stratified};
 use crate::sphere;
 
@@ -87,8 +90,16 @@ pub fn glances(
     let weighted = |channels: &[f64]| channels.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
     let of_table = |table: &Vec<f64>| table.chunks_exact(weights.len().max(1)).map(weighted).collect();
     let tables: Vec<Vec<f64>> = mended.tables.iter().map(of_table).collect();
-    let ways = Ways::new(prepared.seed, normals, effort);
-    let looked_up = Looked { tables: &tables, ways: &ways };
+    let Some(sides) = tables.first().map(Vec::len) else {
+        return vec![vec![0.0; normals.len() * effort.replicates as usize]; points.len()];
+    };
+    let scene = prepared.scene;
+    let material = |surface: &Surface| is_plain(&scene.materials[surface.material].bsdf);
+    let looked_up = Looked {
+        luminance: (0..sides).flat_map(|side| tables.iter().map(move |table| table[side])).collect(),
+        ways: Ways::new(prepared.seed, normals, effort),
+        plain: scene.mesh.surfaces.iter().map(material).collect(),
+    };
     points
         .par_iter()
         .enumerate()
@@ -96,33 +107,74 @@ pub fn glances(
         .collect()
 }
 
-/// What look-ups find, a table for each replicate, and where they look.
-struct Looked<'a> {
-    tables: &'a [Vec<f64>],
-    ways: &'a Ways,
+/// What look-ups find and where they look.
+struct Looked {
+    /// `[side · replicates + replicate]`, cd/m².
+    luminance: Vec<f64>,
+    ways: Ways,
+    /// Per surface: whether what a patch stores is all that is seen of it.
+    plain: Vec<bool>,
+}
+
+/// Whether a ray ends at a surface, and finds there what it reflects and passes on and nothing else.
+fn is_plain(bsdf: &Bsdf) -> bool {
+    bsdf.specular(1.0).is_none() && bsdf.lobe().is_none() && !(bsdf.emitted() > 0.0)
 }
 
 /// Directions of look-ups, stratified over the sphere. All points share them, so that their noise shows no
 /// grain from eye to eye and they are made once.
 struct Ways {
-    /// All that points may take: runs of the replicates one after the other.
-    directions: Vec<DVec3>,
-    /// `[direction · normals + normal]`, not below 0.
+    /// Those that any normal faces; of each time that rays are added, neighbours follow each other.
+    all: Vec<Way>,
+    /// Where in `all` each time begins and ends.
+    ends: [usize; TIMES.len() + 1],
+    /// `[way · normals + normal]`, not below 0.
     cosines: Vec<f64>,
+}
+
+/// A direction, and the replicate whose table is asked.
+struct Way {
+    course: Course,
+    replicate: usize,
 }
 
 impl Ways {
     fn new(seed: u64, normals: &[DVec3], effort: &GlanceEffort) -> Self {
         let mut rng = Rng::new(seed, STREAMS[0], SHARED);
         let sequence = Stratified::new(&mut rng);
-        let most = TIMES[TIMES.len() - 1] * effort.rays * effort.replicates;
-        // Uniform, not by the cosines: strata of two numbers pay more than they would.
-        let directions: Vec<DVec3> =
-            (0..most).map(|ray| sphere::uniform_sphere(sequence.point(ray, &mut rng))).collect();
-        let cosines =
-            directions.iter().flat_map(|&way| normals.iter().map(move |normal| normal.dot(way).max(0.0)));
-        Self { cosines: cosines.collect(), directions }
+        let (mut all, mut ends) = (Vec::new(), [0; TIMES.len() + 1]);
+        let mut done = 0;
+        for (time, times) in TIMES.into_iter().enumerate() {
+            let run = times * effort.rays - done;
+            let first = done * effort.replicates;
+            // Runs of the sequence one after the other: every fourth point would lie in a quarter of the sphere.
+            // Uniform, not by the cosines: strata of two numbers pay more than they would.
+            let mut added: Vec<(DVec3, usize)> = (0..run * effort.replicates)
+                .map(|ray| {
+                    (sphere::uniform_sphere(sequence.point(first + ray, &mut rng)), (ray / run) as usize)
+                })
+                .filter(|(direction, _)| in_sight(normals, *direction))
+                .collect();
+            let belts = f64::from(run * effort.replicates / 2).sqrt().ceil();
+            added.sort_by_cached_key(|(direction, _)| along_belts(*direction, belts));
+            all.extend(
+                added.iter().map(|&(direction, replicate)| Way { course: Course::new(direction), replicate }),
+            );
+            ends[time + 1] = all.len();
+            done += run;
+        }
+        let cosines = all.iter().flat_map(|way| normals.iter().map(|n| n.dot(way.course.direction).max(0.0)));
+        Self { cosines: cosines.collect(), all, ends }
     }
+}
+
+/// Place of a direction on a line that goes to and fro along belts of the sphere: rays from one point that follow
+/// each other meet the same things, which are then at hand.
+fn along_belts(direction: DVec3, belts: f64) -> (u32, u32) {
+    let belt = (0.5 * (1.0 + direction.z) * belts).min(belts - 1.0) as u32;
+    let turn = 0.5 + 0.5 * direction.y.atan2(direction.x) / PI;
+    let along = if belt.is_multiple_of(2) { turn } else { 1.0 - turn };
+    (belt, (along * f64::from(1u32 << 24)) as u32)
 }
 
 /// What one walk found the field to lack on a patch side, cd/m² for each channel.
@@ -210,65 +262,73 @@ fn look_ups(
     normals: &[DVec3],
     weights: &[f64],
     effort: &GlanceEffort,
-    Looked { tables, ways }: &Looked,
+    looked: &Looked,
     item: u64,
 ) -> Vec<f64> {
+    let scene = prepared.scene;
+    let patches = prepared.field.as_ref().expect("glances need a field").patches();
     let mut rng = Rng::new(prepared.seed, STREAMS[0], item);
-    let mut sight = Sight::new(prepared.scene.channels.len());
-    let mut met = vec![0.0; prepared.scene.channels.len()];
+    let mut sight = Sight::new(scene.channels.len());
+    let mut met = vec![0.0; scene.channels.len()];
     let mut bundles = Vec::new();
-    let count = normals.len();
+    let (count, replicates) = (normals.len(), effort.replicates as usize);
     let cosine = |normal: &DVec3, direction: DVec3| normal.dot(direction).max(0.0);
     let of_all = |direction| normals.iter().map(|normal| cosine(normal, direction)).sum();
     prepared.highlights.about(&prepared.emitters, point, of_all, &mut bundles);
     let aimed = if bundles.is_empty() { 0.0 } else { AIMED };
-    let mut sums = vec![0.0; effort.replicates as usize * count];
+    let mixture = |direction: DVec3| {
+        UNIFORM + if aimed > 0.0 { aimed * highlights::density(&bundles, direction) } else { 0.0 }
+    };
+    // What is seen along a ray through mirrors, panes and lobes, by the table of a replicate.
+    let mut luminance = |direction: DVec3, replicate: usize, rng: &mut Rng| {
+        look(&prepared.emitters, point, direction, ANALOG, rng, &mut sight);
+        met.copy_from_slice(&sight.met);
+        let mut stored = 0.0;
+        for landing in &sight.landings {
+            add_emission(scene, landing.triangle, &mut met, landing.weight);
+            stored += landing.weight * looked.luminance[side(prepared, landing) * replicates + replicate];
+        }
+        stored + met.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>()
+    };
+    let mut sums = vec![0.0; replicates * count];
     // The replicates share one sequence, so that the mean has the strata of all rays; that they keep apart makes
     // their spread, the stated error, larger than the mean's own.
     let aims = Stratified::new(&mut rng);
-    let mut about = vec![0.0; count];
     let mut done = [0; 2];
-    for rays in TIMES.map(|times| times * effort.rays) {
-        if done[0] > 0 && spread(&sums, count) <= effort.rough {
+    for (time, times) in TIMES.into_iter().enumerate() {
+        if time > 0 && spread(&sums, count) <= effort.rough {
             break;
         }
+        let rays = times * effort.rays;
         let due = [rays, (aimed * f64::from(rays)).ceil() as u32];
-        for (replicate, table) in tables.iter().enumerate() {
-            let mut sample = |direction: DVec3, cosines: &[f64], rng: &mut Rng| {
-                // Behind an eye that looks one way only there is nothing to see.
-                if cosines.iter().all(|cosine| *cosine <= 0.0) {
-                    return;
-                }
-                let highlighted = if aimed > 0.0 { highlights::density(&bundles, direction) } else { 0.0 };
-                let mixture = UNIFORM + aimed * highlighted;
-                look(&prepared.emitters, point, direction, ANALOG, rng, &mut sight);
-                met.copy_from_slice(&sight.met);
-                let mut luminance = 0.0;
-                for landing in &sight.landings {
-                    add_emission(prepared.scene, landing.triangle, &mut met, landing.weight);
-                    luminance += landing.weight * table[side(prepared, landing)];
-                }
-                luminance += met.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>();
-                let own = &mut sums[replicate * count..(replicate + 1) * count];
-                for (sum, cosine) in own.iter_mut().zip(cosines) {
-                    *sum += cosine * luminance / mixture;
-                }
+        let ways = &looked.ways;
+        for number in ways.ends[time]..ways.ends[time + 1] {
+            let Way { course, replicate } = &ways.all[number];
+            let Some(hit) = scene.tracer.closest_on(point, course, &[]) else { continue };
+            let seen = if looked.plain[scene.tracer.surface(hit.triangle) as usize] {
+                let side = patches.side_at(hit.triangle, hit.barycentric, hit.front);
+                looked.luminance[side * replicates + replicate]
+            } else {
+                luminance(course.direction, *replicate, &mut rng)
             };
-            // Runs of the sequence one after the other: every fourth point would lie in a quarter of the sphere.
-            let run = |which: usize| {
-                let first = done[which] * effort.replicates + replicate as u32 * (due[which] - done[which]);
-                first..first + due[which] - done[which]
-            };
-            for number in run(0).map(|number| number as usize) {
-                let cosines = &ways.cosines[number * count..(number + 1) * count];
-                sample(ways.directions[number], cosines, &mut rng);
+            let seen = seen / mixture(course.direction);
+            let own = &mut sums[replicate * count..(replicate + 1) * count];
+            for (sum, cosine) in own.iter_mut().zip(&ways.cosines[number * count..(number + 1) * count]) {
+                *sum += cosine * seen;
             }
-            for number in run(1) {
+        }
+        for replicate in 0..replicates {
+            let first = done[1] * effort.replicates + replicate as u32 * (due[1] - done[1]);
+            for number in first..first + due[1] - done[1] {
                 let direction = highlights::draw(&bundles, aims.point(number, &mut rng));
-                for (about, normal) in about.iter_mut().zip(normals) {
-                    *about = cosine(normal, direction);
+                if !in_sight(normals, direction) {
+                    continue;
                 }
-                sample(direction, &about, &mut rng);
+                let seen = luminance(direction, replicate, &mut rng) / mixture(direction);
+                for (sum, normal) in sums[replicate * count..(replicate + 1) * count].iter_mut().zip(normals)
+                {
+                    *sum += cosine(normal, direction) * seen;
+                }
             }
         }
         done = due;

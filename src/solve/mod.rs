@@ -32,7 +32,7 @@ use crate::query::{Demand, Kernel, Ray};
 use crate::rng::Rng;
 use crate::scene::Scene;
 
-use beacons::Beacons;
+use beacons::{Beacons, Chances};
 use gaps::Gaps;
 
 pub use glance::{GlanceEffort, Mended, as_stored, glances, mend};
@@ -134,6 +134,8 @@ pub struct Prepared<'s> {
     gaps: Gaps,
     /// Bright patches of the field.
     beacons: Beacons,
+    /// Their chances to be aimed at from every receiver; empty where there are none.
+    chances: Vec<Chances>,
     /// What chains start from; only for local estimation.
     origins: Option<chains::Origins>,
     /// Largest G = cos θ cos θ′/d² of a connection, 1/m²; the rest is made up for.
@@ -218,6 +220,10 @@ pub fn prepare<'s>(
     let beacons = field.as_ref().map_or_else(Beacons::default, |field| {
         Beacons::new(scene, field.patches(), |side| field.at(side).iter().sum())
     });
+    let chances = match &field {
+        Some(field) if !beacons.is_empty() => chances_of(&emitters, demand, field, &beacons, seed),
+        _ => Vec::new(),
+    };
     let unshadowed = match method {
         Method::Links | Method::Local | Method::Double => unshadowed_rows(&emitters, demand),
         Method::Path => Vec::new(),
@@ -238,6 +244,7 @@ pub fn prepare<'s>(
         field,
         gaps: gaps.unwrap_or_default(),
         beacons,
+        chances,
         origins,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,
@@ -265,6 +272,7 @@ pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
         field: Some(stored.field),
         gaps: Gaps::default(),
         beacons: Beacons::default(),
+        chances: Vec::new(),
         origins: None,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed: Vec::new(),
@@ -318,6 +326,29 @@ impl Prepared<'_> {
     pub fn patches(&self) -> usize {
         self.field.as_ref().map_or(0, |field| field.patches().len())
     }
+}
+
+/// Chances of bright patches at every receiver.
+fn chances_of(
+    emitters: &Emitters,
+    demand: &Demand,
+    field: &LuminanceField,
+    beacons: &Beacons,
+    seed: u64,
+) -> Vec<Chances> {
+    let receivers = demand.receivers.par_iter().enumerate();
+    receivers
+        .map(|(index, receiver)| {
+            let origin = lifted(emitters.scene, receiver.point, receiver.lift);
+            let kernels = &receiver.kernels;
+            let response = |direction| kernels.iter().map(|kernel| kernel.response(direction)).sum();
+            let mut rng = Rng::new(seed, 0, beacons::ITEM + index as u64);
+            let seen = beacons.seen(emitters, field, origin, kernels, &mut rng);
+            let mut chances = Chances::default();
+            beacons.about(origin, response, kernels.len(), None, Some(&seen), &mut chances);
+            chances
+        })
+        .collect()
 }
 
 /// Farther than this before a plane, m, lies what a receiver on it may see.

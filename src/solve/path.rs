@@ -1,7 +1,7 @@
 //! An independent check: plain path tracing from every receiver with next-event estimation of one
 //! luminaire at random (at glossy surfaces weighted with hits of openings) and of one luminous surface
-//! (weighted with hits of it), Russian roulette, and no stored field, no images, no splitting. It shares scene, tracer, scattering models and response
-//! kernels with the links method and nothing else.
+//! (weighted with hits of it), Russian roulette, and no stored field, no splitting. It shares scene, tracer, scattering
+//! models and response kernels with the links method, and the images of *points* in mirrors, which no path can hit.
 
 use glam::DVec3;
 
@@ -30,6 +30,15 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
             let out = &mut values[row * channels * PARTS..(row + 1) * channels * PARTS];
             for _ in 0..paths {
                 lamp_light(scene, origin, kernel, 1.0 / f64::from(paths), &mut rng, out);
+                mirrored_points(
+                    prepared,
+                    |_| origin,
+                    &mut rng,
+                    |channel, direction, lx| {
+                        out[channel * PARTS + Part::Image as usize] +=
+                            lx * kernel.response(direction) / f64::from(paths);
+                    },
+                );
                 if let Some(glow) = glows.one(scene, &mut rng, |_| origin) {
                     let share = glow.density / (glow.density + kernel.pdf(glow.direction));
                     let value = glow.lx * kernel.response(glow.direction) * share / f64::from(paths);
@@ -40,7 +49,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
                 if density > 0.0 {
                     let weight = kernel.response(direction) / density / f64::from(paths);
                     let start = Start { origin, direction, weight, sees_lamps: false, drawn: Some(density) };
-                    trace(scene, &glows, start, &mut rng, &mut counts, out);
+                    trace(prepared, &glows, start, &mut rng, &mut counts, out);
                 }
             }
             row += 1;
@@ -52,7 +61,7 @@ pub(super) fn block(prepared: &Prepared, stream: u64) -> Sheet {
         for _ in 0..paths {
             let (origin, direction, weight) = (*point, *direction, 1.0 / f64::from(paths));
             let start = Start { origin, direction, weight, sees_lamps: true, drawn: None };
-            trace(scene, &glows, start, &mut rng, &mut counts, out);
+            trace(prepared, &glows, start, &mut rng, &mut counts, out);
         }
         row += 1;
     }
@@ -109,6 +118,29 @@ fn one_lamp(
     Some(Lit { lx, direction, luminaire: chosen, channel: scene.channel_of[chosen], density })
 }
 
+/// Light of point sources by one mirror: channel, direction and normal illuminance of every image that is seen.
+fn mirrored_points(
+    prepared: &Prepared,
+    origin_towards: impl Fn(DVec3) -> DVec3,
+    rng: &mut Rng,
+    mut add: impl FnMut(usize, DVec3, f64),
+) {
+    let emitters = &prepared.emitters;
+    for source in emitters.sources.iter().filter(|source| source.mirror.is_some() && source.is_point()) {
+        let origin = origin_towards(source.position);
+        let considered = emitters.chance(source);
+        if !emitters.may_show(source, origin) || (considered < 1.0 && rng.uniform() >= considered) {
+            continue;
+        }
+        if let Some(arrival) = emitters.arrival_if(source, origin, [0.5; 2], |_| true) {
+            let passed = emitters.passed(source, origin, &arrival);
+            if passed > 0.0 {
+                add(source.channel, arrival.direction, arrival.normal_lx * passed / considered);
+            }
+        }
+    }
+}
+
 /// Luminance of the luminaires that a ray from a glossy surface meets straight or through panes,
 /// shared with [`one_lamp`], which finds the same light: the density of each over the sum of both.
 fn glossy_lamps(
@@ -150,13 +182,14 @@ struct Start {
 
 /// Follows one path.
 fn trace(
-    scene: &Scene,
+    prepared: &Prepared,
     glows: &Glows,
     Start { mut origin, mut direction, mut weight, mut sees_lamps, drawn }: Start,
     rng: &mut Rng,
     counts: &mut Counts,
     out: &mut [f64],
 ) {
+    let scene = prepared.scene;
     // Where the way to what is hit began, and the density there; a reflection in a mirror is found by no other.
     let mut drawn = drawn.map(|density| (origin, density));
     let mut reflected_once = false;
@@ -207,6 +240,11 @@ fn trace(
                 let value = bsdf.f(local, to_eye) * local.z.abs() * lit.lx * weight * share;
                 out[lit.channel * PARTS + Part::Indirect as usize] += value;
             }
+            mirrored_points(prepared, side, rng, |channel, direction, lx| {
+                let local = frame.transpose() * direction;
+                let value = bsdf.f(local, to_eye) * local.z.abs() * lx * weight;
+                out[channel * PARTS + Part::Indirect as usize] += value;
+            });
             if let Some(glow) = glows.one(scene, rng, side) {
                 let local = frame.transpose() * glow.direction;
                 let share = glow.density / (glow.density + bsdf.pdf(local, to_eye));

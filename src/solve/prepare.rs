@@ -25,6 +25,10 @@ use crate::sphere;
 const PATCHES: f64 = 1500.0;
 /// Samples of direct light per patch side.
 const DIRECT_SAMPLES: u32 = 4;
+/// … and beside an opening, of which a part may lie behind the patch's plane.
+const NEAR_SAMPLES: u32 = 32;
+/// A patch lies beside an opening up to so many of its radii.
+const NEAR: f64 = 3.0;
 /// One link in this many is doubled by a ray about the highlights that may be seen from its place.
 const GLINTS: u32 = 4;
 /// Dark sides of what is shown have one in this many links.
@@ -195,12 +199,18 @@ fn first_light(
     }
     let mut scratch = Vec::new();
     let sequence = Stratified::new(&mut rng);
-    for sample in 0..DIRECT_SAMPLES {
+    let (middle, _) = patches.centre(side);
+    let extent_m = patches.area_m2(side).sqrt();
+    let beside = emitters.sources.iter().any(|source| {
+        !source.is_point() && source.position.distance(middle) < NEAR * source.radius_m + extent_m
+    });
+    let samples = if beside { NEAR_SAMPLES } else { DIRECT_SAMPLES };
+    for sample in 0..samples {
         let at = place(patches, side, sequence.point(sample, &mut rng));
         add_direct(emitters, &at, f64::INFINITY, &mut rng, &mut scratch, &mut direct);
     }
     for value in &mut direct {
-        *value /= f64::from(DIRECT_SAMPLES);
+        *value /= f64::from(samples);
     }
     let shone_on = |glow: &Aims, rng: &mut Rng| {
         (0..DIRECT_SAMPLES).any(|sample| {
@@ -283,11 +293,8 @@ fn collect(common: &Links, side: usize, FirstLight { mut direct, mut rng, .. }: 
         // What lobes reflect of luminaires is looked for about their highlights too.
         let origin = at.origin(scene, same_side);
         highlights.about(emitters, origin, |direction| facing.dot(direction), &mut bundles);
-        let aimed = if link % GLINTS == 0 && !bundles.is_empty() {
-            Some(highlights::draw(&bundles, rng.uniforms()))
-        } else {
-            None
-        };
+        let is_aimed = link % GLINTS == 0 && !bundles.is_empty();
+        let aimed = is_aimed.then(|| highlights::draw(&bundles, rng.uniforms()));
         for (number, direction) in aimed.into_iter().chain([direction]).enumerate() {
             let cosine = facing.dot(direction).max(0.0) * FRAC_1_PI;
             let by_aim = highlights::density(&bundles, direction) / f64::from(GLINTS);

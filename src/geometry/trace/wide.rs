@@ -32,6 +32,16 @@ pub(super) struct Pack {
     pub(super) id: [u32; LANES],
 }
 
+/// What of a ray follows from its direction alone: many rays may share it.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// Unit direction.
+    pub direction: DVec3,
+    shear: [f64; 3],
+    axes: [usize; 3],
+    inverse32: [f32; 3],
+}
+
 /// A ray prepared for Woop's test and for the slab test.
 pub(super) struct Prepared {
     pub(super) origin: [f64; 3],
@@ -100,27 +110,45 @@ pub(super) fn collapse(bvh: &Bvh2, mesh: &Mesh) -> Wide {
 
 /// Prepares a ray; boxes are relative to `centre`.
 pub(super) fn prepare(origin: DVec3, centre: DVec3, direction: DVec3) -> Prepared {
-    let d = direction.to_array();
-    let z = if d[0].abs() > d[1].abs() {
-        if d[0].abs() > d[2].abs() { 0 } else { 2 }
-    } else if d[1].abs() > d[2].abs() {
-        1
-    } else {
-        2
-    };
-    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-    let o = origin.to_array();
-    let local = (origin - centre).as_vec3();
-    let inverse = |d: f64| {
-        let d = d as f32;
-        1.0 / if d.abs() < 1e-20 { 1e-20f32.copysign(d) } else { d }
-    };
-    Prepared {
-        origin: [o[x], o[y], o[z]],
-        shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]],
-        axes: [x, y, z],
-        origin32: local.to_array(),
-        inverse32: d.map(inverse),
+    Course::new(direction).from(origin, centre)
+}
+
+impl Course {
+    /// Along a unit direction.
+    #[inline]
+    pub fn new(direction: DVec3) -> Self {
+        let d = direction.to_array();
+        let z = if d[0].abs() > d[1].abs() {
+            if d[0].abs() > d[2].abs() { 0 } else { 2 }
+        } else if d[1].abs() > d[2].abs() {
+            1
+        } else {
+            2
+        };
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let inverse = |d: f64| {
+            let d = d as f32;
+            1.0 / if d.abs() < 1e-20 { 1e-20f32.copysign(d) } else { d }
+        };
+        Self {
+            direction,
+            shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]],
+            axes: [x, y, z],
+            inverse32: d.map(inverse),
+        }
+    }
+
+    /// A ray from `origin`; boxes are relative to `centre`.
+    #[inline]
+    pub(super) fn from(&self, origin: DVec3, centre: DVec3) -> Prepared {
+        let o = origin.to_array();
+        Prepared {
+            origin: self.axes.map(|axis| o[axis]),
+            shear: self.shear,
+            axes: self.axes,
+            origin32: (origin - centre).as_vec3().to_array(),
+            inverse32: self.inverse32,
+        }
     }
 }
 

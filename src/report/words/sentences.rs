@@ -60,8 +60,8 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "Свет светильников, приходящий через два и более зеркала подряд, и свет светящих поверхностей, приходящий через зеркало, находится случайно.",
     ),
     (
-        "intervals may miss what is rare; at points and areas their upper ends allow for what two mirrors send there straight",
-        "интервалы могут не учесть редкое; в точках и областях верхняя граница учитывает то, что приходит прямо через два зеркала",
+        "intervals may miss what is rare; at points and areas their upper ends allow for what they send there straight",
+        "интервалы могут не учесть редкое; в точках и областях верхняя граница учитывает то, что приходит от них прямо",
     ),
     ("maintained", "эксплуатационные значения"),
     // Notes of a view.
@@ -81,6 +81,18 @@ pub const SENTENCES: &[(&str, &str)] = &[
     (
         "Unshadowed light of openings is integrated numerically.",
         "Свет выходных отверстий без учёта затенения интегрируется численно.",
+    ),
+    (
+        "Path tracing finds small bright places by chance.",
+        "Трассировка путей находит малые яркие места случайно.",
+    ),
+    (
+        "Local estimation finds small bright places and luminous surfaces by chance.",
+        "Локальная оценка находит малые яркие места и светящие поверхности случайно.",
+    ),
+    (
+        "value and interval may both lack what is rare; the method links aims at it",
+        "редкого света может недоставать и в значении, и в интервале; метод links целится в него",
     ),
     ("at most about {} of each luminaire's illuminance", "не более {} освещённости от каждого светильника"),
     (

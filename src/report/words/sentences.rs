@@ -197,6 +197,37 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "Room \"{}\" is dark in an emergency: none of its luminaires has an output then (`emergency`).",
         "Помещение «{}» в аварийном режиме тёмное: ни у одного светильника не задан аварийный поток (`emergency`).",
     ),
+    // What norms ask for and nothing computes.
+    (
+        "half of it within 5 s and all of it within 60 s (two sources)",
+        "половина через 5 с, полная величина через 60 с (два источника)",
+    ),
+    (
+        "half of it within 5 s and all of it within 60 s (one source)",
+        "половина через 5 с, полная величина через 60 с (один источник)",
+    ),
+    ("at least 1 h (one source)", "не менее 1 ч (один источник)"),
+    ("luminaires at 2 m and higher (one source)", "светильники на высоте 2 м и выше (один источник)"),
+    (
+        "all of it at once or within 0.5 s (two sources)",
+        "полная величина сразу или через 0,5 с (два источника)",
+    ),
+    ("all of it within 0.5 s (one source)", "полная величина через 0,5 с (один источник)"),
+    ("as long as the risk lasts (one source)", "пока сохраняется опасность (один источник)"),
+    ("no stroboscopic effect (one source)", "без стробоскопического эффекта (один источник)"),
+    ("colour temperature from {} K to {} K", "цветовая температура от {} К до {} К"),
+    ("contrast of the edges of steps", "контраст кромок ступеней"),
+    ("safety colours must be recognisable", "сигнальные цвета должны быть различимы"),
+    ("stroboscopic effects are to be avoided", "следует избегать стробоскопического эффекта"),
+    (
+        "illuminance: set by the exhibition and by the protection of the exhibits",
+        "освещённость: определяется экспозицией и защитой экспонатов",
+    ),
+    ("illuminance: set by the exhibition", "освещённость: определяется экспозицией"),
+    (
+        "illuminance: the norm asks for a fitting atmosphere",
+        "освещённость: норма требует подходящей атмосферы",
+    ),
     (
         "a tenth of the task's maintained illuminance is required where that is more than 15 lx: ask for it with [[require]]",
         "требуется десятая часть эксплуатационной освещённости рабочей области, если она больше 15 лк: задайте её в [[require]]",

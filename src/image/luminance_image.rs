@@ -36,17 +36,21 @@ impl LuminanceImage {
     /// Mean luminance in cd/m² of what the projection shows, Σ L ω / Σ ω over the pixels whose centres lie in it;
     /// of all pixels alike without a view.
     pub fn mean_cd_m2(&self) -> f64 {
-        let (mut light, mut seen_sr) = (0.0, 0.0);
-        for (index, luminance) in self.luminance_cd_m2.iter().enumerate() {
+        let raster = self.view.map(|view| view.raster(self.size()));
+        let of_pixel = |index: usize| {
             let pixel = [index % self.width, index / self.width];
-            let centre = pixel.map(|place| place as f64 + 0.5);
-            let solid_angle_sr = match self.view {
+            match &raster {
                 None => 1.0,
-                Some(view) if view.direction(self.size(), centre).is_some() => {
-                    view.solid_angles_sr(self.size(), pixel)[0]
+                Some(raster) if raster.shows(pixel.map(|place| place as f64 + 0.5)) => {
+                    raster.solid_angles_sr(pixel)[0]
                 }
                 Some(_) => 0.0,
-            };
+            }
+        };
+        let solid_angles_sr: Vec<f64> =
+            (0..self.luminance_cd_m2.len()).into_par_iter().with_min_len(1 << 12).map(of_pixel).collect();
+        let (mut light, mut seen_sr) = (0.0, 0.0);
+        for (luminance, solid_angle_sr) in self.luminance_cd_m2.iter().zip(solid_angles_sr) {
             light += luminance * solid_angle_sr;
             seen_sr += solid_angle_sr;
         }

@@ -123,7 +123,7 @@ impl Shot {
         let centre = |index: usize| [(index % width) as f64 + 0.5, (index / width) as f64 + 0.5];
         let raster = self.image.view.map(|view| view.raster([width, height]));
         let seen = |index: usize| raster.is_none_or(|raster| raster.shows(centre(index)));
-        (0..width * height).map(seen).collect()
+        (0..width * height).into_par_iter().with_min_len(1 << 12).map(seen).collect()
     }
 
     /// Median of the standard errors over the luminances, where they are those of the whole.
@@ -142,6 +142,11 @@ impl Shot {
 
     /// The image with remarks for formats that keep them.
     fn annotated(&self) -> LuminanceImage {
+        LuminanceImage { notes: self.notes(), ..self.image.clone() }
+    }
+
+    /// How it was made and what it leaves out.
+    fn notes(&self) -> Vec<String> {
         let interval = match self.way {
             Way::Stored | Way::Exact => "no interval".to_owned(),
             Way::Blocks(blocks) => format!("{blocks} blocks"),
@@ -155,7 +160,7 @@ impl Shot {
             notes.push("channel se: standard error of the rays in glossy lobes alone".to_owned());
         }
         notes.extend(self.biases.iter().cloned());
-        LuminanceImage { notes, ..self.image.clone() }
+        notes
     }
 }
 
@@ -246,7 +251,7 @@ fn scale_and_colours(shot: &Shot) -> (Scale, Vec<u8>) {
 }
 
 fn remarks(shot: &Shot) -> String {
-    shot.annotated().notes.join("\n")
+    shot.notes().join("\n")
 }
 
 fn false_colours(shot: &Shot) -> Result<Vec<u8>, ReportError> {

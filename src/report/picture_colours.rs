@@ -1,6 +1,8 @@
 //! False colours for luminances: a logarithmic scale and colours of even perceptual steps (viridis,
 //! van der Walt & Smith 2015, CC0), also for the colour-blind. Dark means little light.
 
+use rayon::prelude::*;
+
 use super::ReportError;
 use super::canvas::Rgb;
 
@@ -20,6 +22,8 @@ const VIRIDIS: [Rgb; 11] = [
 ];
 /// Colours of a picture: as many as eight bits of a component can tell apart.
 const RAMP: usize = 1024;
+/// Pixels that are coloured together.
+const PART: usize = 1 << 13;
 /// What lies outside of the projection.
 const OUTSIDE: Rgb = [255, 255, 255];
 
@@ -93,13 +97,16 @@ pub fn colour(position: f64) -> Rgb {
 }
 
 /// Colours of a picture row by row; `inside` says which pixels belong to it.
-pub fn colours(luminances: &[f64], scale: Scale, inside: impl Fn(usize) -> bool) -> Vec<u8> {
+pub fn colours(luminances: &[f64], scale: Scale, inside: impl Fn(usize) -> bool + Sync) -> Vec<u8> {
     let ramp: [Rgb; RAMP] = std::array::from_fn(|k| colour(k as f64 / (RAMP - 1) as f64));
     let mut pixels = vec![0; 3 * luminances.len()];
-    for (index, (pixel, &luminance)) in pixels.chunks_exact_mut(3).zip(luminances).enumerate() {
-        let shown = || ramp[(scale.position(luminance) * (RAMP - 1) as f64).round() as usize];
-        pixel.copy_from_slice(&if inside(index) { shown() } else { OUTSIDE });
-    }
+    let parts = pixels.par_chunks_mut(3 * PART).zip(luminances.par_chunks(PART)).enumerate();
+    parts.for_each(|(part, (pixels, luminances))| {
+        for (index, (pixel, &luminance)) in pixels.chunks_exact_mut(3).zip(luminances).enumerate() {
+            let shown = || ramp[(scale.position(luminance) * (RAMP - 1) as f64).round() as usize];
+            pixel.copy_from_slice(&if inside(part * PART + index) { shown() } else { OUTSIDE });
+        }
+    });
     pixels
 }
 

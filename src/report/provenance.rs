@@ -2,6 +2,7 @@
 //! the bytes (seed, blocks, inputs) and no machine; it also is the manifest by which a later run
 //! knows its own files.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ReportError;
@@ -53,7 +54,7 @@ struct Manifest {
 /// A manifest only: the files of a folder with their hashes.
 pub fn manifest(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ReportError> {
     let row = |(path, bytes): &(String, Vec<u8>)| FileRow { path: path.clone(), sha256: sha256(bytes) };
-    bytes(&Manifest { files: files.iter().map(row).collect() })
+    bytes(&Manifest { files: files.par_iter().map(row).collect() })
 }
 
 /// Paths and hashes that a provenance.json lists; empty if it is not one of ours.

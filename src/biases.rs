@@ -28,14 +28,7 @@ pub(crate) fn add(
             Some(crate::emitters::TOLERANCE),
         );
     }
-    let found_by_chance = match settings.method {
-        Method::Links => None,
-        Method::Path => Some("Path tracing finds small bright places by chance."),
-        Method::Local | Method::Double => {
-            Some("Local estimation finds small bright places and luminous surfaces by chance.")
-        }
-    };
-    if let Some(what) = found_by_chance {
+    if let Some(what) = found_by_chance(settings.method) {
         note(what, "value and interval may both lack what is rare; the method links aims at it".into(), None);
     }
     let specular = (0..scene.mesh.triangles.len() as u32).any(|t| scene.bsdf(t).specular(1.0).is_some());
@@ -119,6 +112,17 @@ pub(crate) fn add(
             format!("{:.4} % of all rays; see the escaped flux", 100.0 * escaped as f64 / rays.max(1) as f64),
             Some(0.0),
         );
+    }
+}
+
+/// What a method does not aim at.
+fn found_by_chance(method: Method) -> Option<&'static str> {
+    match method {
+        Method::Links => None,
+        Method::Path => Some("Path tracing finds small bright places by chance."),
+        Method::Local | Method::Double => {
+            Some("Local estimation finds small bright places and luminous surfaces by chance.")
+        }
     }
 }
 

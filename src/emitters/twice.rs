@@ -93,7 +93,9 @@ pub fn twice_mirrored(
     for own in &emitters.sources[..emitters.scene.luminaires.len()] {
         let Some(images) = images(emitters, pairs, own) else {
             let unknown = ByChance { channel: own.channel, lx: f64::INFINITY, per_ray: 0.0 };
-            found.iter_mut().for_each(|found| found.push(unknown));
+            for found in &mut found {
+                found.push(unknown);
+            }
             continue;
         };
         for Shown { source: image, row, .. } in &images {

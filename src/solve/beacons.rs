@@ -232,7 +232,7 @@ impl Beacons {
                 continue;
             }
             look(emitters, origin, direction, 1.0, rng, &mut sight);
-            for landing in sight.landings.iter() {
+            for landing in &sight.landings {
                 let side = patches.side_at(landing.triangle, landing.barycentric, landing.front);
                 if self.place[side] == NONE {
                     let stored: f64 = field.at(side).iter().sum();

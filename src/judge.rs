@@ -70,23 +70,20 @@ pub fn blocks_needed(gauged: &Gauged, quantity: Quantity, bound: Bound, blocks: 
     (needed.is_finite() && needed < 1e12).then(|| (needed.ceil() as usize).max(blocks + 1))
 }
 
-/// The least factor by which all luminaires may be dimmed together: every illuminance is linear in it,
-/// its interval too, and uniformities and ratios do not change. UGR only falls, which is not counted.
+/// The least factor by which all luminaires may be dimmed together, rounded up to three figures: every
+/// illuminance is linear in it, its interval too. What all else comes to at the factor ([`others_pass`]) is
+/// judged at `at(factor)`.
 /// `None` where no illuminance is required from below, or one has no value, or an index of glare must not
 /// fall.
-pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
-    let is_level = |r: &&Requirement| matches!(r.quantity.unit(), "lx" | "cd/m²") && !r.statistic.is_ratio();
-    let judged = |r: &&Requirement| {
-        matches!(r.verdict, Verdict::Pass | Verdict::Fail | Verdict::Undecided | Verdict::Undefined)
-    };
+pub fn dimming(requirements: &[Requirement], at: impl FnOnce(f64) -> Vec<Requirement>) -> Option<Dimming> {
     let must_not_fall = |r: &&Requirement| {
         matches!(r.bound, Bound::Min(_)) && matches!(r.quantity, Quantity::Ugr | Quantity::OfView { .. })
     };
-    if requirements.iter().filter(must_not_fall).filter(judged).any(|r| !is_level(&r)) {
+    if requirements.iter().filter(must_not_fall).any(|r| is_judged(r) && !is_level(r)) {
         return None;
     }
     let mut least: Option<(f64, &Requirement)> = None;
-    for requirement in requirements.iter().filter(is_level).filter(judged) {
+    for requirement in requirements.iter().filter(|r| is_level(r) && is_judged(r)) {
         let Bound::Min(limit) = requirement.bound else { continue };
         if !(requirement.lo_joint > 0.0) || requirement.value.is_err() {
             return None;
@@ -102,15 +99,41 @@ pub fn dimming(requirements: &[Requirement]) -> Option<Dimming> {
         }
     }
     let (factor, by) = least?;
-    let mut others =
-        requirements.iter().filter(judged).filter(|r| !is_level(r) || matches!(r.bound, Bound::Max(_)));
+    let factor = rounded_up(factor);
     Some(Dimming {
         factor,
         subject: by.subject.clone(),
         quantity: by.quantity.key(),
-        others_pass: others.all(|r| r.verdict == Verdict::Pass),
+        others_pass: others_pass(&at(factor)),
         groups: None,
     })
+}
+
+/// Whether all passes that less light does not fail: upper limits, glare, uniformities, ratios.
+fn others_pass(requirements: &[Requirement]) -> bool {
+    let is_other = |r: &&Requirement| !is_level(r) || matches!(r.bound, Bound::Max(_));
+    let mut others = requirements.iter().filter(|r| is_judged(r)).filter(is_other);
+    others.all(|r| r.verdict == Verdict::Pass)
+}
+
+fn is_level(requirement: &Requirement) -> bool {
+    matches!(requirement.quantity.unit(), "lx" | "cd/m²") && !requirement.statistic.is_ratio()
+}
+
+fn is_judged(requirement: &Requirement) -> bool {
+    matches!(requirement.verdict, Verdict::Pass | Verdict::Fail | Verdict::Undecided | Verdict::Undefined)
+}
+
+/// A factor that must hold as it is printed: three significant figures, never rounded down.
+pub fn rounded_up(factor: f64) -> f64 {
+    if !(factor > 0.0 && factor.is_finite()) {
+        return factor;
+    }
+    let decimals = 2 - factor.log10().floor() as i32;
+    let scale = 10f64.powi(decimals.abs());
+    // What is a number of three figures already, but for the last bits, stays.
+    let whole = |x: f64| (x * (1.0 - 1e-12)).ceil();
+    if decimals >= 0 { whole(factor * scale) / scale } else { whole(factor / scale) * scale }
 }
 
 /// A value as norms print it, rounded half-up: illuminance and luminance to three significant figures,
@@ -184,6 +207,17 @@ mod tests {
         assert_eq!(needed(490.0, 20.0), Some(256), "on either side");
         assert_eq!(needed(500.0, 25.0), Some(6400), "at the limit: the indifference of 2.5 lx decides");
         assert_eq!(needed(500.0, f64::INFINITY), None);
+    }
+
+    /// Catches: a factor rounded to nearest, at which the room then fails; one that is given too few figures.
+    #[test]
+    fn a_factor_that_must_hold_is_never_rounded_down() {
+        let said =
+            [(0.10495, 0.105), (0.012_34, 0.0124), (0.61, 0.61), (1.0, 1.0), (0.9991, 1.0), (3.001, 3.01)];
+        for (exact, rounded) in said {
+            assert!((rounded_up(exact) - rounded).abs() < 1e-12, "{exact}: {}", rounded_up(exact));
+        }
+        assert!((rounded_up(1234.0) - 1240.0).abs() < 1e-9 && rounded_up(0.0).abs() < 1e-12);
     }
 
     #[test]

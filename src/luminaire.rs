@@ -28,9 +28,6 @@ pub struct LuminaireType {
     pub maintenance: Maintenance,
     /// Share of the initial flux that is left in an emergency; `None`: the luminaire is dark then.
     pub emergency: Option<f64>,
-    /// Azimuth of the C0 half-plane in the luminaire frame, degrees from +x towards +y: −90 for
-    /// EULUMDAT, 0 for LM-63 and built-in sources. For drawings only.
-    pub c0_azimuth_deg: f64,
     /// Photometric file as written in the project, empty for built-in sources.
     pub file: String,
     /// Colour rendering index declared for this type, if any.

@@ -78,7 +78,11 @@ fn new_project(dir: &Path) -> u8 {
     if dir.exists() {
         return complain(&format!("{} exists already; name a new folder", dir.display()));
     }
-    let text = include_str!("../scenes/box/project.toml");
+    let name = dir.file_name().unwrap_or_default().to_string_lossy();
+    let text = include_str!("../scenes/box/project.toml")
+        .replacen("name = \"box\"", &format!("name = {}", toml::Value::from(name.as_ref())), 1)
+        .replace("out/box", &format!("out/{}", commands_run::folder_name(&name).display()))
+        .replace("scenes/box", &dir.display().to_string());
     let made = std::fs::create_dir_all(dir).and_then(|()| std::fs::write(dir.join("project.toml"), text));
     match made {
         Ok(()) => say(&format!("{}\n", dir.join("project.toml").display())),

@@ -3,13 +3,14 @@
 
 mod furniture;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
 use crate::digest::Hash;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::trace::{Simd, Tracer};
+use crate::geometry::welded::closed_surfaces;
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
 
@@ -32,6 +33,8 @@ pub struct Scene {
     pub tracer: Tracer,
     /// Per surface: whether it is part of a luminaire's body.
     of_a_body: Vec<bool>,
+    /// Per surface: whether it closes round a solid; found when it is first asked for.
+    closed: OnceLock<Vec<bool>>,
 }
 
 /// What a line of sight met of luminaires' bodies since it was last turned by something else.
@@ -154,7 +157,21 @@ impl Scene {
         for &surface in luminaires.iter().flat_map(|luminaire| &luminaire.body) {
             of_a_body[surface as usize] = true;
         }
-        Ok(Self { mesh, materials, luminaires, channels, channel_of, tracer, of_a_body })
+        Ok(Self {
+            mesh,
+            materials,
+            luminaires,
+            channels,
+            channel_of,
+            tracer,
+            of_a_body,
+            closed: OnceLock::new(),
+        })
+    }
+
+    /// Whether a surface closes round a solid; see [`closed_surfaces`].
+    pub fn is_closed(&self, surface: u32) -> bool {
+        self.closed.get_or_init(|| closed_surfaces(&self.mesh))[surface as usize]
     }
 
     /// SHA-256 of everything that decides how light goes: geometry, materials and luminaires at initial

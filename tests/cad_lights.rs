@@ -98,6 +98,21 @@ fn on_demand_they_are_luminaires() {
     }
 }
 
+/// Catches: lights that are called alike taken for one type, with one's flux and one's table for both.
+#[test]
+fn lights_of_one_name_that_shine_unlike_are_two_types() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = "[luminaires.Lamp]\npoint = { flux = 100 }\n[[place]]\nluminaire = \"Lamp\"\nat = [0, 0, 1]\n";
+    let same = gltf().replace("\"Bulb\"", "\"Lamp\"").replace("\"Spot\"", "\"Lamp\"");
+    let project = project(folder.path(), &format!("lights = true\n{own}"), &same).expect("loads");
+    let luminaires = &project.worlds[0].scene.luminaires;
+    let said: Vec<(&str, &str)> =
+        luminaires.iter().map(|l| (l.kind.name.as_str(), l.group.as_str())).collect();
+    let expected = [("Lamp", "Lamp"), ("Lamp (2)", "Lamp"), ("Lamp (3)", "Lamp"), ("Photo", "Photo")];
+    assert_eq!(said, expected);
+    assert_eq!(project.worlds[0].scene.channels.len(), 4, "each is solved on its own");
+}
+
 /// A file of 900 cd towards its 0° plane and 100 cd elsewhere at 45°, its length a multiple of 3.
 fn one_sided() -> String {
     let file = IES.replace("3 1 1 2", "3 5 1 2").replace(

@@ -254,6 +254,24 @@ fn a_room_without_a_row_is_not_assessed() {
     assert!(said.contains("EN 12464-1:2021 is not assessed"), "{said}");
 }
 
+/// Catches: a new project that writes its report over that of the example.
+#[test]
+fn a_new_project_is_named_after_its_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["my-office", "Зал 2", "a'b"] {
+        let made = std::process::Command::new(env!("CARGO_BIN_EXE_gershun"))
+            .current_dir(folder.path())
+            .args(["new", name])
+            .output()
+            .expect("the program starts");
+        assert!(made.status.success(), "{made:?}");
+        let project = load(&folder.path().join(name), &LoadOptions::default()).expect("loads");
+        assert_eq!(project.info.name, name);
+        let text = std::fs::read_to_string(folder.path().join(name).join("project.toml")).expect("text");
+        assert!(!text.contains("out/box") && !text.contains("scenes/box"), "{text}");
+    }
+}
+
 /// Catches: a list whose second column of a name is passed over, a line of sight beyond the zenith.
 #[test]
 fn lists_are_read_strictly() {

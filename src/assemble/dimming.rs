@@ -9,9 +9,11 @@
 
 use super::Context;
 use super::cheapest::{Row, cheapest};
+use super::is_computed;
 use crate::estimate::scheffe;
+use crate::judge::rounded_up;
 use crate::measure::area;
-use crate::outcome::{Bound, GroupDimming, GroupFactor, Verdict};
+use crate::outcome::{Bound, GroupDimming, GroupFactor, Requirement, Verdict};
 use crate::plan::{PlannedQuantity, PlannedRequirement, Rows, Subject};
 use crate::quantity::{Quantity, Statistic};
 use crate::scene::Channel;
@@ -65,6 +67,19 @@ impl Demand {
 }
 
 impl Context<'_> {
+    /// A room's requirements with all luminaires of the world at a factor.
+    pub(super) fn dimmed_to(&self, room: usize, factor: f64) -> Vec<Requirement> {
+        let mut factors: Vec<(String, f64)> = Vec::new();
+        for channel in &self.world.scene.channels {
+            if let Channel::Luminaires { group, .. } = channel
+                && !factors.iter().any(|(known, _)| known == group)
+            {
+                factors.push((group.clone(), factor));
+            }
+        }
+        Context { group_factors: &factors, ..*self }.requirements(room)
+    }
+
     /// The cheapest factors; `None` for fewer than two groups, where something does not pass at full
     /// output, or where Scheffé's wider bounds are not reached at full output.
     pub(super) fn group_dimming(&self, room: usize) -> Option<GroupDimming> {
@@ -88,14 +103,16 @@ impl Context<'_> {
         let best = least(&prices, &demands)?;
         // Towards full output until all passes: what is not linear in the factors (glare at observers, U_d)
         // is no bound above.
-        let towards = |t: f64| -> Vec<f64> { best.iter().map(|x| x + t * (1.0 - x)).collect() };
+        // Factors have three figures and are checked with them, since that is how they are printed and set.
+        let towards =
+            |t: f64| -> Vec<f64> { best.iter().map(|x| rounded_up(x + t * (1.0 - x)).min(1.0)).collect() };
         let complies = |x: &[f64]| {
             let factors: Vec<(String, f64)> = groups.iter().cloned().zip(x.iter().copied()).collect();
             let dimmed = Context { group_factors: &factors, ..*self };
             let verdicts = dimmed.requirements(room);
             reached(x) && verdicts.iter().zip(&full).all(|(new, old)| old.verdict == new.verdict)
         };
-        let steps = [0.0, 1e-6, 1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
+        let steps = [0.0, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
         let x = steps.into_iter().map(towards).find(|x| complies(x))?;
         let sum = |x: &[f64]| prices.iter().zip(x).map(|(p, x)| p * x).sum::<f64>();
         Some(GroupDimming {
@@ -105,16 +122,28 @@ impl Context<'_> {
         })
     }
 
-    /// Luminaire groups of a room and what each costs at full output: power, or flux where a power is not
-    /// known.
+    /// Luminaire groups of a room that shine in a light scene by which it is judged, and what each costs in
+    /// these scenes together: power, or flux where a power is not known.
     fn groups(&self, room: usize) -> Option<(Vec<String>, Vec<f64>, &'static str)> {
         let scene = &self.world.scene;
         let hung: Vec<_> = self.world.rooms[room].luminaires.iter().map(|&l| &scene.luminaires[l]).collect();
+        let mut judged: Vec<usize> = self.plan.rooms[room]
+            .requirements
+            .iter()
+            .filter(|r| is_computed(&r.subject))
+            .map(|r| r.light_scene)
+            .collect();
+        judged.sort_unstable();
+        judged.dedup();
+        let in_scenes = |group: &str| -> f64 {
+            judged.iter().map(|&light_scene| self.project.light_scenes[light_scene].factor(group)).sum()
+        };
         let by_power = hung.iter().all(|luminaire| luminaire.kind.power_w.is_some_and(|watts| watts > 0.0));
         let mut groups: Vec<(String, f64)> = Vec::new();
         for luminaire in hung {
             let kind = &luminaire.kind;
-            let price = if by_power { kind.power_w.unwrap_or(0.0) } else { kind.flux_lm } * luminaire.dim;
+            let full = if by_power { kind.power_w.unwrap_or(0.0) } else { kind.flux_lm } * luminaire.dim;
+            let price = full * in_scenes(&luminaire.group);
             match groups.iter_mut().find(|(group, _)| *group == luminaire.group) {
                 Some((_, sum)) => *sum += price,
                 None => groups.push((luminaire.group.clone(), price)),
@@ -126,6 +155,7 @@ impl Context<'_> {
             Channel::Surfaces { .. } => false,
         };
         let alone = scene.channels.iter().all(own) && self.world.rooms.len() == 1;
+        groups.retain(|(group, _)| in_scenes(group) > 0.0);
         if groups.len() < 2 || !alone || groups.iter().any(|(_, price)| !(*price > 0.0)) {
             return None;
         }

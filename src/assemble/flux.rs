@@ -1,6 +1,7 @@
 //! A room's flux balance and installed power.
 
 use super::Context;
+use crate::luminaire::Luminaire;
 use crate::measure::{area, flux};
 use crate::norm::{Light, State};
 use crate::outcome::{FluxBalance, Power, Value};
@@ -63,12 +64,14 @@ impl Context<'_> {
         of_luminaires.chain(of_surfaces).sum()
     }
 
-    /// Installed power, per floor area and per 100 lx of the mean on the horizontal task areas under the
-    /// first light scene.
+    /// Installed power by floor area; and what the light scene takes by which the horizontal task areas are
+    /// judged, by floor area and 100 lx of their mean. Of several such scenes the one with the most light.
+    /// A luminaire takes its power in proportion to its light: what its gear takes when dimmed is not known.
     pub(super) fn power(&self, index: usize) -> Option<Power> {
-        let (room, planned) = (&self.world.rooms[index], &self.plan.rooms[index]);
+        let room = &self.world.rooms[index];
         let scene = &self.world.scene;
-        let watts = room.luminaires.iter().map(|&l| scene.luminaires[l].kind.power_w);
+        let hung = || room.luminaires.iter().map(|&l| &scene.luminaires[l]);
+        let watts = hung().map(|luminaire| luminaire.kind.power_w);
         let installed_w = watts.collect::<Option<Vec<f64>>>()?.into_iter().sum::<f64>();
         let corners = &room.footprint;
         let count = corners.len();
@@ -79,9 +82,33 @@ impl Context<'_> {
         }
         // In an emergency the mains draw nothing, so that nothing can be related to it.
         let in_emergency = self.condition().state == State::Emergency;
-        let weights = self.weights(0, room);
+        let tasks = self.plan.rooms[index].areas.iter().filter(|area| area.kind == AreaKind::Task);
+        let mut judged: Vec<usize> = tasks.map(|area| area.light_scene).collect();
+        judged.sort_unstable();
+        judged.dedup();
+        let lit = judged.iter().filter_map(|&number| Some((number, self.mean_on_tasks(index, number)?)));
+        let lit = lit.filter(|_| !in_emergency).max_by(|(_, a), (_, b)| a.total_cmp(b));
+        let light_scene = &self.project.light_scenes[lit.map_or(0, |(number, _)| number)];
+        let taken = |luminaire: &Luminaire| {
+            luminaire.kind.power_w.unwrap_or(0.0) * luminaire.dim * light_scene.factor(&luminaire.group)
+        };
+        let scene_w: f64 = hung().map(taken).sum();
+        Some(Power {
+            installed_w,
+            area_m2,
+            density_w_m2: installed_w / area_m2,
+            mean_lx: lit.map(|(_, mean_lx)| mean_lx),
+            density_w_m2_100lx: lit.map(|(_, mean_lx)| scene_w / area_m2 / (mean_lx / 100.0)),
+            light_scene: light_scene.name.clone(),
+            scene_w,
+        })
+    }
+
+    /// Mean on the horizontal task areas under a light scene, lx, each by its size; `None` without light.
+    fn mean_on_tasks(&self, index: usize, light_scene: usize) -> Option<f64> {
+        let weights = self.weights(light_scene, &self.world.rooms[index]);
         let (mut flux_lm, mut lit_m2) = (0.0, 0.0);
-        for area in planned.areas.iter().filter(|area| area.kind == AreaKind::Task && !in_emergency) {
+        for area in self.plan.rooms[index].areas.iter().filter(|area| area.kind == AreaKind::Task) {
             let Some(entry) = area.quantities.iter().find(|q| q.quantity == Quantity::Horizontal) else {
                 continue;
             };
@@ -93,16 +120,7 @@ impl Context<'_> {
                 lit_m2 += own_m2;
             }
         }
-        let mean_lx = (lit_m2 > 0.0).then(|| flux_lm / lit_m2).filter(|mean| *mean > 0.0);
-        let density_w_m2 = installed_w / area_m2;
-        Some(Power {
-            installed_w,
-            area_m2,
-            density_w_m2,
-            mean_lx,
-            density_w_m2_100lx: mean_lx.map(|mean| density_w_m2 / (mean / 100.0)),
-            light_scene: self.project.light_scenes[0].name.clone(),
-        })
+        (flux_lm > 0.0).then(|| flux_lm / lit_m2)
     }
 
     /// Block values of Σ Ē·A over the task areas, lm.

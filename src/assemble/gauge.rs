@@ -6,7 +6,7 @@ use crate::glare::source::nothing_glares;
 use crate::luminaire::LuminaireType;
 use crate::measure::glare_sources::Convention;
 use crate::measure::zones::ZoneLight;
-use crate::measure::{self, Gauged, area, intensity, room_ugr, view};
+use crate::measure::{Gauged, area, intensity, room_ugr, view};
 use crate::outcome::{Bound, UgrTableOutcome, Verdict};
 use crate::plan::{BEHIND, PlannedRequirement, Subject};
 use crate::project::{Declared, Room};
@@ -127,8 +127,7 @@ impl Context<'_> {
     ) -> Result<f64, Undefined> {
         let entry = &self.world.rooms[room];
         let scene = &self.world.scene;
-        let light_scene = &self.project.light_scenes[light_scene];
-        let weights = measure::weights(self.world, light_scene, entry, false);
+        let weights = self.initial(light_scene, entry);
         let hung = entry.luminaires.iter().map(|&l| (l, &scene.luminaires[l])).filter(|(_, luminaire)| {
             let height_m = luminaire.position.z - entry.floor_m;
             luminaire.kind.name == kind && height_m >= from_m && height_m < to_m

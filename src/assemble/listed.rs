@@ -13,7 +13,8 @@ pub(super) fn luminaire(entry: &Luminaire) -> LuminaireOutcome {
         group: entry.group.clone(),
         position: entry.position,
         outline: entry.kind.opening.outline().iter().map(|&p| entry.position + axes * p).collect(),
-        c0: axes * crate::sphere::from_azimuth_tilt(entry.kind.c0_azimuth_deg, 0.0),
+        // C0 lies across the length in every format, as in `lamp`.
+        c0: axes * DVec3::NEG_Y,
         aim: entry.beam_axis(),
     }
 }

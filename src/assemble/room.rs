@@ -43,7 +43,7 @@ impl Context<'_> {
             dimming: if self.world.scene.channels.iter().any(|c| matches!(c, Channel::Surfaces { .. })) {
                 None
             } else {
-                judge::dimming(&self.requirements(index))
+                judge::dimming(&self.requirements(index), |factor| self.dimmed_to(index, factor))
                     .map(|dimming| Dimming { groups: self.group_dimming(index), ..dimming })
             },
         };

@@ -185,7 +185,6 @@ mod tests {
             power_w: None,
             maintenance: Maintenance::NEW,
             emergency: None,
-            c0_azimuth_deg: 0.0,
             file: String::new(),
             declared_ra: None,
         };

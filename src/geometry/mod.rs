@@ -5,5 +5,6 @@ pub mod gltf;
 pub mod mesh;
 pub mod polygon;
 pub mod trace;
+pub mod welded;
 
 pub use glam::{DMat3, DVec2, DVec3};

@@ -48,7 +48,7 @@ pub struct RoomOutcome {
     pub dimming: Option<Dimming>,
 }
 
-/// Installed power of a room, all luminaires at full output.
+/// Installed power of a room, all luminaires at full output, and the power of a light scene beside its light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Power {
     /// Of all luminaires, W.
@@ -59,23 +59,25 @@ pub struct Power {
     pub density_w_m2: f64,
     /// Mean maintained illuminance on the horizontal task areas under `light_scene`, lx.
     pub mean_lx: Option<f64>,
-    /// W/m² for every 100 lx of it.
+    /// W/m² of `scene_w` for every 100 lx of it.
     pub density_w_m2_100lx: Option<f64>,
-    /// The first light scene.
+    /// The light scene by which the horizontal task areas are judged; of several the one with the most light.
     pub light_scene: String,
+    /// What it takes, `dim` included, W: power in proportion to light.
+    pub scene_w: f64,
 }
 
 /// The least common factor on all luminaires with which a room still complies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Dimming {
-    /// The factor: below 1 there is light to spare, above 1 so much flux is missing. The lower ends of
-    /// the joint intervals, times the factor, reach their limits.
+    /// The factor, rounded up to three figures: below 1 there is light to spare, above 1 so much flux is
+    /// missing. The lower ends of the joint intervals, times the factor, reach their limits.
     pub factor: f64,
     /// Subject of the requirement that decides.
     pub subject: String,
     /// Its quantity.
     pub quantity: String,
-    /// Whether what dimming cannot mend (uniformity, ratios, glare) passes.
+    /// Whether all else passes at the factor: upper limits and glare, which fall with it, uniformity, ratios.
     pub others_pass: bool,
     /// Factors by luminaire group, where that is more than one question.
     pub groups: Option<GroupDimming>,
@@ -84,7 +86,8 @@ pub struct Dimming {
 /// Factors on the luminaire groups with which all verdicts of a room still pass, at the least power.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GroupDimming {
-    /// What is left of the power, or of the flux where a power is not known.
+    /// What is left of the power, or of the flux where a power is not known, that the light scenes by which
+    /// the room is judged take together.
     pub share: f64,
     /// `power` or `flux`.
     pub of: String,
@@ -97,7 +100,7 @@ pub struct GroupDimming {
 pub struct GroupFactor {
     /// Group.
     pub group: String,
-    /// Factor on its output, beyond that of the light scene.
+    /// Factor on its output, beyond that of the light scene; of three figures, with which it was checked.
     pub factor: f64,
 }
 
@@ -112,7 +115,7 @@ pub struct LuminaireOutcome {
     pub position: DVec3,
     /// Outline of the opening in project coordinates, empty for a point.
     pub outline: Vec<DVec3>,
-    /// Unit direction of the C0 half-plane in project coordinates.
+    /// Unit direction of the C0 half-plane, across the length, in project coordinates.
     pub c0: DVec3,
     /// Unit direction of the beam axis.
     pub aim: DVec3,

@@ -168,7 +168,7 @@ fn of_norm(
             rows.push(row);
         }
         let Some(zone) = zone_of(room, area) else { continue };
-        let modified = modification(standard, room, area, row, own);
+        let modified = modification(standard, room, Some(area), row, own);
         let level_lx = modified.as_ref().map(|(lx, _)| *lx);
         for limit in standard.requirements_at(row, level_lx).iter().filter(|limit| limit.zone == zone) {
             let subject = on(planned, place, limit.quantity, limit.statistic);
@@ -234,15 +234,15 @@ pub(super) fn standard_level(row: &Row) -> Statistic {
 
 /// The illuminance asked for in this context and how it came about: the area's own modification, or the
 /// room's for the room's own row.
-fn modification(
+pub(super) fn modification(
     standard: &Standard,
     room: &Room,
-    area: &PlannedArea,
+    area: Option<&PlannedArea>,
     row: &Row,
     own: Option<&String>,
 ) -> Option<(f64, Modified)> {
     let of_room = room.modified.as_ref().filter(|_| own == Some(&row.reference));
-    let modified = area.modified.as_ref().or(of_room)?;
+    let modified = area.and_then(|area| area.modified.as_ref()).or(of_room)?;
     let level_lx = standard.modified_illuminance(row, modified.steps).ok()?;
     let norm::Bound::Min(required_lx) = row.illuminance()?.bound else { return None };
     Some((level_lx, Modified { required_lx, steps: modified.steps, reason: modified.reason.clone() }))

@@ -1,8 +1,10 @@
 //! What a row of a norm asks of a room as a whole: glare, declared properties, intensities of luminaires, and
 //! the zones that no area of the project covers.
 
-use super::requirements::{of_room, requirement, standard_level, unassessed, unknown_limit, verified};
-use super::zones::{self, zone_name};
+use super::requirements::{
+    modification, of_room, requirement, standard_level, unassessed, unknown_limit, verified,
+};
+use super::zones::{self, Gap, zone_name};
 use super::{PlannedRequirement, PlannedRoom, Subject};
 use crate::norm::{Row, Standard, UgrMethod, Zone};
 use crate::outcome::Bound;
@@ -22,7 +24,13 @@ pub(super) fn whole_room(
     let standard = &norm.standard;
     let application = &standard.application;
     let mut required = Vec::new();
-    for limit in &standard.requirements(row) {
+    let own = room.row.as_ref().or(norm.row.as_ref());
+    // What is not assessed has the limit that it would be judged by: that of its task, as modified.
+    let modified_at = |gap: &Gap| {
+        let task = gap.task.map(|place| &planned.areas[place]);
+        modification(standard, room, task, row, own)
+    };
+    for (number, limit) in standard.requirements(row).iter().enumerate() {
         let subjects: Vec<(Subject, String)> = match limit.zone {
             Zone::Room | Zone::Declared => {
                 let observed = application.ugr_method.value == UgrMethod::Observers;
@@ -42,7 +50,20 @@ pub(super) fn whole_room(
                 } else {
                     Vec::new()
                 };
-                gaps.into_iter().map(|gap| (Subject::Missing(gap.reason), gap.subject)).collect()
+                let level = |gap: &Gap| modified_at(gap).map(|(lx, _)| lx.to_bits());
+                let alike = gaps.windows(2).all(|two| level(&two[0]) == level(&two[1]));
+                let gaps = if alike { zones::in_one(gaps, room, planned, zone) } else { gaps };
+                for gap in gaps {
+                    let modified = modified_at(&gap);
+                    let limits = standard.requirements_at(row, modified.as_ref().map(|(lx, _)| *lx));
+                    let subject = Subject::Missing(gap.reason);
+                    let mut one = requirement(standard, row, &limits[number], subject, &gap.subject);
+                    if zone == Zone::Task && limit.statistic == standard_level(row) {
+                        one.modified = modified.map(|(_, modified)| modified);
+                    }
+                    required.push(one);
+                }
+                Vec::new()
             }
         };
         for (subject, name) in subjects {

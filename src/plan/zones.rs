@@ -28,6 +28,8 @@ pub(super) struct Gap {
     pub(super) subject: String,
     /// Why it is not assessed.
     pub(super) reason: String,
+    /// The task area round which it lies, by index within the room: the limit follows from the task's.
+    pub(super) task: Option<usize>,
 }
 
 /// What the areas of a room leave out of a zone that `row` regulates. Zones round a task are asked of every
@@ -42,7 +44,7 @@ pub(super) fn gaps(
     zone: Zone,
 ) -> Vec<Gap> {
     let survey = Survey { scene: &world.scene, room, planned, row, rules };
-    let gaps = match zone {
+    match zone {
         Zone::Task if is_own => survey.task(),
         Zone::Surrounding | Zone::Background => survey.around(zone),
         Zone::Walls if is_own => survey.walls(),
@@ -51,15 +53,19 @@ pub(super) fn gaps(
         Zone::Task | Zone::Walls | Zone::Ceiling | Zone::Cylindrical | Zone::Room | Zone::Declared => {
             Vec::new()
         }
-    };
-    // Where nothing at all is listed one line says so.
+    }
+}
+
+/// Where nothing at all of a zone is listed one line says so instead of one for each part, whose limits are the
+/// same.
+pub(super) fn in_one(gaps: Vec<Gap>, room: &Room, planned: &PlannedRoom, zone: Zone) -> Vec<Gap> {
     let none = gaps.len() > 1 && !planned.areas.iter().any(|area| zone_of(room, area) == Some(zone));
-    if none { vec![nothing_listed(zone)] } else { gaps }
+    if none { vec![Gap { task: gaps[0].task, ..nothing_listed(zone) }] } else { gaps }
 }
 
 fn nothing_listed(zone: Zone) -> Gap {
     let name = zone_name(zone);
-    Gap { subject: name.into(), reason: format!("the project lists no {name} in this room") }
+    Gap { subject: name.into(), reason: format!("the project lists no {name} in this room"), task: None }
 }
 
 /// Zone of the norm that an area plays; `None` for surfaces that are neither wall nor ceiling.
@@ -103,11 +109,6 @@ pub(super) fn zone_name(zone: Zone) -> &'static str {
     }
 }
 
-/// The zone of a task area: `Desk · surrounding area`.
-fn beside(task: &PlannedArea, zone: Zone) -> String {
-    format!("{} · {}", task.name, zone_name(zone))
-}
-
 /// A room, its areas, and the row by which they are surveyed.
 struct Survey<'a> {
     scene: &'a Scene,
@@ -127,6 +128,13 @@ impl Survey<'_> {
         self.areas(Zone::Task).filter(|area| area.row.as_deref() == Some(self.row.reference.as_str()))
     }
 
+    /// What is missing round a task area.
+    fn beside(&self, task: &PlannedArea, zone: Zone, reason: String) -> Gap {
+        let subject = format!("{} · {}", task.name, zone_name(zone));
+        let place = self.planned.areas.iter().position(|area| std::ptr::eq(area, task));
+        Gap { subject, reason, task: place }
+    }
+
     fn task(&self) -> Vec<Gap> {
         if self.tasks().next().is_some() {
             return Vec::new();
@@ -135,7 +143,7 @@ impl Survey<'_> {
             return vec![nothing_listed(Zone::Task)];
         }
         let reason = format!("the project lists no task area of row {} in this room", self.row.reference);
-        vec![Gap { subject: zone_name(Zone::Task).into(), reason }]
+        vec![Gap { subject: zone_name(Zone::Task).into(), reason, task: None }]
     }
 
     /// The strip along walls that need not be covered, m: as in grids, none where the room is narrow.
@@ -177,7 +185,7 @@ impl Survey<'_> {
                 } else {
                     format!("the project lists no {name} round this task area")
                 };
-                gaps.push(Gap { subject: beside(task, zone), reason });
+                gaps.push(self.beside(task, zone, reason));
             }
         }
         gaps
@@ -199,7 +207,7 @@ impl Survey<'_> {
             };
             if !self.areas(zone).any(|area| area.of.as_ref() == Some(&task.name) || holds(area)) {
                 let reason = format!("the project lists no {} round this task area", zone_name(zone));
-                gaps.push(Gap { subject: beside(task, zone), reason });
+                gaps.push(self.beside(task, zone, reason));
             }
         }
         gaps
@@ -278,7 +286,7 @@ impl Survey<'_> {
                 }
             }
             if let Some(share) = tally.short_of(COVERED_WALL) {
-                gaps.push(Gap { subject: name.clone(), reason: on_wall(share) });
+                gaps.push(Gap { subject: name.clone(), reason: on_wall(share), task: None });
             }
         }
         gaps
@@ -306,7 +314,7 @@ impl Survey<'_> {
         let short = tally.short_of(COVERED).filter(|_| self.areas(Zone::Ceiling).next().is_some());
         match short {
             Some(share) => {
-                vec![Gap { subject: zone_name(Zone::Ceiling).into(), reason: on_ceiling(share) }]
+                vec![Gap { subject: zone_name(Zone::Ceiling).into(), reason: on_ceiling(share), task: None }]
             }
             None if self.areas(Zone::Ceiling).next().is_none() => vec![nothing_listed(Zone::Ceiling)],
             None => Vec::new(),
@@ -328,7 +336,7 @@ impl Survey<'_> {
             if volumes.is_empty() {
                 let reason =
                     format!("the project lists no volume at {height_m} m, the eye height of the row");
-                gaps.push(Gap { subject: zone_name(Zone::Cylindrical).into(), reason });
+                gaps.push(Gap { subject: zone_name(Zone::Cylindrical).into(), reason, task: None });
                 continue;
             }
             for task in self.tasks() {
@@ -343,7 +351,7 @@ impl Survey<'_> {
                     let percent = 100.0 * share;
                     let reason =
                         format!("volumes at {height_m} m lie over only {percent:.0} % of this task area");
-                    gaps.push(Gap { subject: beside(task, Zone::Cylindrical), reason });
+                    gaps.push(self.beside(task, Zone::Cylindrical, reason));
                 }
             }
         }

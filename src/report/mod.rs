@@ -120,7 +120,12 @@ fn luminaires(outcome: &Outcome, lang: Lang) -> Vec<(String, Vec<u8>)> {
         let name = format!("luminaires/{}.svg", plan::file_name(&kind.name));
         let dark = !(kind.distribution.flux().0 > 0.0);
         if !dark && !files.iter().any(|(known, _)| known.to_lowercase() == name.to_lowercase()) {
-            let svg = lamp::diagram(&kind.name, &kind.description, &kind.distribution, lang);
+            let svg = lamp::diagram(
+                &kind.name,
+                &words::description(lang, &kind.description, &kind.file),
+                &kind.distribution,
+                lang,
+            );
             files.push((name, svg.into_bytes()));
         }
     }

@@ -29,7 +29,7 @@ pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> Stri
         Term::VerdictColumn,
     ]
     .map(|term| word(lang, term));
-    grid("walrrrl", &head, &rows)
+    grid("walrrra", &head, &rows)
 }
 
 fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
@@ -47,10 +47,7 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     vec![
         format!("<span title=\"{name}\">{}</span>", symbol(&text.symbol)),
         escape(&place),
-        format!(
-            "<span class=\"w\">{}{mark}</span><br/><span class=\"note w\">{source}</span>",
-            text.required
-        ),
+        format!("<span class=\"w\">{}{mark}</span><br/><span class=\"note\">{source}</span>", text.required),
         text.value,
         text.interval,
         text.margin,

@@ -52,7 +52,9 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         let unit = word(lang, Term::UnitPowerDensity);
         let own = format!("{} {unit}", number::fixed(lang, power.density_w_m2, 2));
         let by_light = power.density_w_m2_100lx.map(|density| number::fixed(lang, density, 2));
-        by_light.map_or(own.clone(), |per| format!("{own}; {}", phrase(lang, Term::PowerPerLight, &[&per])))
+        by_light.map_or(own.clone(), |per| {
+            format!("{own}; {}", phrase(lang, Term::PowerPerLight, &[&per, &escape(&power.light_scene)]))
+        })
     });
     let dimming = room.dimming.as_ref().map_or(String::new(), |dimming| {
         let term = match (dimming.factor <= 1.0, dimming.others_pass) {
@@ -60,7 +62,7 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
             (true, false) => Term::DimToBut,
             (false, _) => Term::FluxMissing,
         };
-        let factor = number::fixed(lang, dimming.factor, 2);
+        let factor = number::figures(lang, dimming.factor, 3);
         phrase(lang, term, &[&factor, &escape(&words::place_name(lang, &dimming.subject))])
     });
     let by_group = room.dimming.as_ref().and_then(|dimming| dimming.groups.as_ref());
@@ -68,7 +70,7 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
         let each = groups
             .groups
             .iter()
-            .map(|own| format!("{} {}", escape(&own.group), number::fixed(lang, own.factor, 3)));
+            .map(|own| format!("{} {}", escape(&own.group), number::figures(lang, own.factor, 3)));
         let term = if groups.of == "power" { Term::DimGroupsPower } else { Term::DimGroupsFlux };
         phrase(lang, term, &[&each.collect::<Vec<_>>().join(", "), &number::percent(lang, groups.share)])
     });
@@ -89,6 +91,9 @@ fn geometry(room: &RoomOutcome, lang: Lang) -> String {
     ])
 }
 
+/// Letters of a type's name that fit beside the other columns of the schedule.
+const LONG_NAME: usize = 12;
+
 fn schedule(types: &[TypeOutcome], lang: Lang) -> String {
     let dash = || "—".to_owned();
     let row = |kind: &TypeOutcome| {
@@ -99,7 +104,11 @@ fn schedule(types: &[TypeOutcome], lang: Lang) -> String {
         });
         vec![
             format!("<b>{}</b>", escape(&kind.name)),
-            format!("{}{}", escape(&kind.description), below(&escape(&kind.file))),
+            format!(
+                "{}{}",
+                escape(&words::description(lang, &kind.description, &kind.file)),
+                below(&escape(&kind.file))
+            ),
             kind.count.to_string(),
             number::fixed(lang, kind.flux_lm, 0),
             rated,
@@ -135,7 +144,9 @@ fn schedule(types: &[TypeOutcome], lang: Lang) -> String {
         word(lang, Term::Power),
         &factor,
     ];
-    grid("warrrrr", &head, &rows)
+    // A short name stays on its line, a long one must not push the numbers off the page.
+    let long = types.iter().any(|kind| kind.name.chars().count() > LONG_NAME);
+    grid(if long { "aarrrrr" } else { "warrrrr" }, &head, &rows)
 }
 
 /// A second, smaller line in a cell.
@@ -278,4 +289,26 @@ fn flux(balance: &FluxBalance, lang: Lang) -> String {
     ];
     html.push_str(&grid("lrrrrr", &head, &rows));
     format!("<div class=\"whole\">{html}</div>\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    /// Catches: a long type name that pushes the numbers off the page, a description of ours left in English.
+    #[test]
+    fn a_long_name_may_break_and_a_built_in_source_is_told_in_the_readers_language() {
+        let mut types = sample::outcome().rooms[0].types.clone();
+        for kind in &mut types {
+            kind.name = "A".into();
+        }
+        assert!(schedule(&types, Lang::En).contains("<td class=\"w\"><b>A</b>"));
+        types[0].name = "Светильник-аварийный-ЛПО-46".into();
+        types[0].description = "Isotropic point source".into();
+        types[0].file = String::new();
+        let html = schedule(&types, Lang::Ru);
+        assert!(html.contains("<td class=\"a\"><b>Светильник") && !html.contains("<td class=\"w\"><b>"));
+        assert!(html.contains("изотропный точечный источник"), "{html}");
+    }
 }

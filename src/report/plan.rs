@@ -196,6 +196,44 @@ mod tests {
         assert!(svg.len() < 120_000, "{} bytes", svg.len());
     }
 
+    /// Catches: names that the opening or the arrow strikes through, long ones cut to a few letters, titles that run
+    /// off the frame.
+    #[test]
+    fn names_stand_beside_their_luminaires_and_titles_fit() {
+        let mut outcome = sample::outcome();
+        let name = "Светильник ЛПО";
+        for luminaire in &mut outcome.rooms[0].luminaires {
+            luminaire.kind = name.into();
+        }
+        outcome.rooms[0].name = "Коридор эвакуационного выхода первого этажа, ".repeat(3);
+        let subject = subjects(&outcome).next().expect("one");
+        let view = View::of(subject.room, subject.area, CORNER, WINDOW);
+        let svg = draw(subject, Lang::Ru);
+        let document = roxmltree::Document::parse(&svg).expect("well-formed");
+        let texts = || document.descendants().filter(|n| n.has_tag_name("text"));
+        let number = |n: &roxmltree::Node<'_, '_>, key: &str| {
+            n.attribute(key).and_then(|text| text.parse::<f64>().ok()).expect("a number") / 4.0
+        };
+        let mut found = 0;
+        for text in texts().filter(|n| n.text().is_some_and(|text| text.trim() == name)) {
+            let (x, y) = (number(&text, "x"), number(&text, "y"));
+            for luminaire in &outcome.rooms[0].luminaires {
+                let ys = luminaire.outline.iter().map(|at| view.px(*at)[1]);
+                let (low, high) = ys.fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
+                let [centre, _] = view.px(luminaire.position);
+                let clear = (x - centre).abs() > 20.0 || y < low - 3.0 || y > high + 3.0;
+                assert!(clear, "{name} at {x} {y} is struck through: {low}…{high}");
+            }
+            found += 1;
+        }
+        assert!(found >= 3, "{found} names");
+        let title = texts().find(|n| n.text().is_some_and(|text| text.contains("Коридор"))).expect("a title");
+        let letters = title.text().map_or(0, |text| text.trim().chars().count()) as f64;
+        // Bold Cyrillic of the widest font in the list takes 0.62 of its size on the average.
+        let width = 12.0 + 0.62 * number(&title, "font-size") * letters;
+        assert!(width < WIDTH && letters > 90.0, "{letters} letters, {width} px");
+    }
+
     #[test]
     fn a_point_at_the_right_of_a_wall_is_drawn_at_the_right() {
         let outcome = sample::outcome();

@@ -43,13 +43,14 @@ pub(super) fn bold(size: f64, anchor: Anchor) -> Lettering {
     Lettering { weight: Weight::Bold, ..lettering(size, anchor) }
 }
 
-pub(super) fn cut(text: &str, size: f64, width: f64) -> String {
-    let room = (width / (0.54 * size)) as usize;
-    if text.chars().count() <= room {
-        text.to_owned()
-    } else {
-        text.chars().take(room.saturating_sub(1)).chain(['…']).collect()
-    }
+/// A line that fits a width: smaller first, down to `smallest`, and only then cut. A letter counts as `em` of the
+/// size, as wide as Cyrillic runs in the fonts that the page asks for.
+pub(super) fn fitted(text: &str, size: f64, smallest: f64, em: f64, width: f64) -> (String, f64) {
+    let letters = text.chars().count().max(1) as f64;
+    let size = (width / (em * letters)).clamp(smallest, size);
+    let room = (width / (em * size) + 1e-9) as usize;
+    let cut = || text.chars().take(room.saturating_sub(1)).chain(['…']).collect();
+    (if text.chars().count() <= room { text.to_owned() } else { cut() }, size)
 }
 
 impl Drawing<'_> {
@@ -60,12 +61,12 @@ impl Drawing<'_> {
     pub(super) fn title_block(&mut self) {
         let Subject { room, area, .. } = self.subject;
         let head = format!("{} {} · {}", room.number, room.name, words::place_name(self.lang, &area.name));
-        let head = cut(head.trim_start(), 15.0, WIDTH - 24.0);
-        self.canvas.text([12.0, 16.0], &head, bold(15.0, Anchor::Start));
+        let (head, size) = fitted(head.trim_start(), 15.0, 11.0, 0.64, WIDTH - 24.0);
+        self.canvas.text([12.0, 16.0], &head, bold(size, Anchor::Start));
         let lines = [self.quantity(), self.conditions(), self.results()];
         for (line, y) in lines.into_iter().zip([36.0, 53.0, 70.0]) {
-            let line = cut(&line, 11.0, WIDTH - 24.0);
-            self.canvas.text([12.0, y], &line, lettering(11.0, Anchor::Start));
+            let (line, size) = fitted(&line, 11.0, 9.0, 0.6, WIDTH - 24.0);
+            self.canvas.text([12.0, y], &line, lettering(size, Anchor::Start));
         }
         self.canvas.line(&[[12.0, 82.0], [WIDTH - 12.0, 82.0]], PALE, 0.5);
     }

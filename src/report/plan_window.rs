@@ -39,6 +39,9 @@ impl Drawing<'_> {
             for luminaire in &self.subject.room.luminaires {
                 self.luminaire(luminaire);
             }
+            for luminaire in &self.subject.room.luminaires {
+                self.name_of(luminaire);
+            }
         }
         self.isolines(&lines);
         self.extremes();
@@ -147,6 +150,7 @@ impl Drawing<'_> {
         } else {
             self.canvas.circle(centre, 4.0, INK, false);
         }
+        self.taken.push([centre[0] - 5.0, centre[1] - 5.0, centre[0] + 5.0, centre[1] + 5.0]);
         let along = self.view.direction(luminaire.c0);
         if along.length() > 0.05 {
             let along = along.normalize();
@@ -156,9 +160,48 @@ impl Drawing<'_> {
             self.canvas.line(&[start.to_array(), tip.to_array()], INK, 0.9);
             self.canvas.polygon(&[tip.to_array(), wing(1.0), wing(-1.0)], INK, 1.0);
         }
-        let letters: String = luminaire.kind.chars().take(6).collect();
-        self.canvas.text(centre, &letters, bold(9.0, Anchor::Middle));
-        self.take(centre, text_width(&letters, 9.0) + 2.0, 11.0);
+    }
+
+    /// The type's name beside the luminaire, where it covers neither opening nor arrow: above, below, at a side; cut
+    /// where there is no room for all of it, and left out where there is none at all.
+    fn name_of(&mut self, luminaire: &LuminaireOutcome) {
+        const SIZE: f64 = 9.0;
+        let centre = DVec2::from(self.view.px(luminaire.position));
+        let along = self.view.direction(luminaire.c0).normalize_or_zero();
+        let outline = luminaire.outline.iter().map(|at| DVec2::from(self.view.px(*at)));
+        let marks = [centre - DVec2::splat(4.0), centre + DVec2::splat(4.0), centre + along * 16.0];
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for place in outline.chain(marks) {
+            (low, high) = (low.min(place), high.max(place));
+        }
+        let (from, to) = (self.view.corner, self.view.end());
+        for longest in [16, 7] {
+            let text = shortened(&luminaire.kind, longest);
+            let (width, height) = (text_width(&text, SIZE) + 2.0, SIZE + 2.0);
+            let middle = 0.5 * (low + high);
+            for at in [
+                [middle.x, low.y - 0.5 * height - 1.0],
+                [middle.x, high.y + 0.5 * height + 1.0],
+                [high.x + 0.5 * width + 1.0, middle.y],
+                [low.x - 0.5 * width - 1.0, middle.y],
+            ] {
+                let seen = at[0] - 0.5 * width > from[0]
+                    && at[0] + 0.5 * width < to[0]
+                    && at[1] - 0.5 * height > from[1]
+                    && at[1] + 0.5 * height < to[1];
+                if seen && self.take(at, width, height) {
+                    let half = [0.5 * width, 0.5 * height];
+                    self.canvas.rectangle(
+                        [at[0] - half[0], at[1] - half[1]],
+                        [at[0] + half[0], at[1] + half[1]],
+                        [255, 255, 255],
+                        0.6,
+                    );
+                    self.canvas.text(at, &text, bold(SIZE, Anchor::Middle));
+                    return;
+                }
+            }
+        }
     }
 
     fn extremes(&mut self) {
@@ -221,5 +264,14 @@ impl Drawing<'_> {
                 );
             }
         }
+    }
+}
+
+/// The start of a name, with a sign that there is more.
+fn shortened(name: &str, longest: usize) -> String {
+    if name.chars().count() <= longest {
+        name.to_owned()
+    } else {
+        name.chars().take(longest - 1).chain(['…']).collect()
     }
 }

@@ -281,6 +281,7 @@ fn office() -> RoomOutcome {
             mean_lx: Some(520.0),
             density_w_m2_100lx: Some(6.0 / 5.2),
             light_scene: "full".into(),
+            scene_w: 240.0,
         }),
         dimming: Some(Dimming {
             factor: 0.96,

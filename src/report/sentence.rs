@@ -236,30 +236,37 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
     let of_norm = Tally::of(outcome.requirements.iter().filter(|r| r.standard != PROJECT));
     let norm = outcome.norm.as_ref().map(|norm| norm.short.as_str());
     let project = word(lang, Term::ProjectRequirements);
-    // Whose requirements give the verdict of the whole.
-    let whose = norm.map(|norm| if of_norm.verdict() == tally.verdict() { norm } else { project });
+    let own = Tally::of(outcome.requirements.iter().filter(|r| r.standard == PROJECT));
+    // Whose requirements give the verdict of the whole; those are counted first.
+    let norm_decides = of_norm.verdict() == tally.verdict();
+    let whose = norm.map(|norm| if norm_decides { norm } else { project });
+    let decisive = match norm {
+        Some(_) if norm_decides => of_norm,
+        Some(_) => own,
+        None => tally,
+    };
     let with = |named: Term, plain: Term| match whose {
         Some(whose) => phrase(lang, named, &[whose]),
         None => word(lang, plain).to_owned(),
     };
-    let total = tally.judged().to_string();
+    let total = decisive.judged().to_string();
     let count = |term, number: usize| phrase(lang, term, &[&number.to_string(), &total]);
     let mut counts = Vec::new();
     let head = match tally.verdict() {
         Some(Verdict::Fail) => {
-            counts.push(count(Term::FailedOf, tally.fail));
-            if tally.open > 0 {
-                counts.push(count(Term::OpenOf, tally.open));
+            counts.push(count(Term::FailedOf, decisive.fail));
+            if decisive.open > 0 {
+                counts.push(count(Term::OpenOf, decisive.open));
             }
             with(Term::FailsWith, Term::FailsAll)
         }
         Some(Verdict::Pass) => {
-            counts.push(count(Term::PassedOf, tally.pass));
+            counts.push(count(Term::PassedOf, decisive.pass));
             phrase(lang, Term::CompliesWith, &[whose.unwrap_or(project)])
         }
         Some(_) => {
-            counts.push(count(Term::OpenOf, tally.open));
-            counts.push(count(Term::PassedOf, tally.pass));
+            counts.push(count(Term::OpenOf, decisive.open));
+            counts.push(count(Term::PassedOf, decisive.pass));
             with(Term::OpenWith, Term::OpenAll)
         }
         None => match norm {
@@ -267,6 +274,16 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
             None => word(lang, Term::NothingRequired).to_owned(),
         },
     };
+    if let Some(norm) = norm {
+        let parts = |tally: Tally| [tally.pass, tally.judged()].map(|number| number.to_string());
+        if norm_decides && own.judged() > 0 {
+            let [pass, all] = parts(own);
+            counts.push(phrase(lang, Term::OwnPassed, &[&pass, &all]));
+        } else if !norm_decides && of_norm.judged() > 0 {
+            let [pass, all] = parts(of_norm);
+            counts.push(phrase(lang, Term::NormPassed, &[norm, &pass, &all]));
+        }
+    }
     if let Some(norm) = norm.filter(|_| of_norm.verdict().is_none() && tally.verdict().is_some()) {
         counts.push(phrase(lang, Term::NormNotAssessed, &[norm]));
     }
@@ -345,14 +362,26 @@ mod tests {
         let own = "the project's own requirements";
         let norm = "EN 12464-1:2021";
         for (of_norm, of_project, says) in [
-            (&[Pass][..], &[Pass][..], format!("complies with {norm}: 2 of 2 requirements pass")),
-            (&[Pass], &[Fail], format!("does not comply with {own}: 1 of 2 requirements fail")),
-            (&[Fail], &[Pass], format!("does not comply with {norm}: 1 of 2 requirements fail")),
+            (
+                &[Pass][..],
+                &[Pass][..],
+                format!("complies with {norm}: 1 of 1 requirements pass; {own}: 1 of 1 pass"),
+            ),
+            (
+                &[Pass],
+                &[Fail],
+                format!("does not comply with {own}: 1 of 1 requirements fail; {norm}: 1 of 1 pass"),
+            ),
+            (
+                &[Fail],
+                &[Pass],
+                format!("does not comply with {norm}: 1 of 1 requirements fail; {own}: 1 of 1 pass"),
+            ),
             (
                 &[Undecided],
                 &[Pass],
                 format!(
-                    "compliance with {norm} is not established: 1 of 2 undecided or without value; 1 of 2 requirements pass"
+                    "compliance with {norm} is not established: 1 of 1 undecided or without value; 0 of 1 requirements pass; {own}: 1 of 1 pass"
                 ),
             ),
             (
@@ -366,6 +395,13 @@ mod tests {
                 &[],
                 &[Fail],
                 format!("does not comply with {own}: 1 of 1 requirements fail; {norm} is not assessed"),
+            ),
+            (
+                &[Pass, Pass],
+                &[Undecided, Pass],
+                format!(
+                    "compliance with {own} is not established: 1 of 2 undecided or without value; 1 of 2 requirements pass; {norm}: 2 of 2 pass"
+                ),
             ),
             (&[NotAssessed], &[], format!("{norm} is not assessed: 1 not assessed")),
             (&[], &[], format!("{norm} is not assessed")),

@@ -226,7 +226,6 @@ mod tests {
             rated_flux_lm: None,
             power_w: None,
             maintenance: Maintenance::NEW,
-            c0_azimuth_deg: 0.0,
             file: String::new(),
             declared_ra: None,
             emergency: None,

@@ -58,7 +58,6 @@ pub fn lamp(distribution: IntensityDistribution, opening: Opening, position: DVe
         power_w: None,
         maintenance: Maintenance::NEW,
         emergency: None,
-        c0_azimuth_deg: 0.0,
         file: String::new(),
         declared_ra: None,
     };

@@ -6,6 +6,7 @@ mod accessor;
 mod appearance;
 mod container;
 mod lights;
+mod repeated;
 mod walk;
 
 use glam::DVec3;

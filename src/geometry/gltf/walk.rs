@@ -8,6 +8,7 @@ use gltf::json::validation::Checked;
 
 use super::accessor::Buffers;
 use super::lights::Lights;
+use super::repeated::drop_repeated;
 use super::{GltfError, Imported, ImportedMaterial, ImportedNode, is_degenerate};
 use crate::geometry::mesh::Triangle;
 
@@ -109,6 +110,7 @@ impl<'a> Walk<'a> {
         for node in &mut out.nodes {
             node.surfaces.sort_unstable();
         }
+        let repeated = drop_repeated(&mut out.mesh);
         let mut say = |count: usize, what: &str| {
             if count > 0 {
                 out.biases.push(format!("{count} {what}"));
@@ -117,6 +119,7 @@ impl<'a> Walk<'a> {
         say(self.skipped, "primitives of points or lines were ignored");
         say(self.cut, "primitives end in an incomplete triangle");
         say(out.degenerate, "triangles without area were dropped");
+        say(repeated, "triangles repeat another one of their surface (double-sided faces) and were dropped");
         Ok(())
     }
 

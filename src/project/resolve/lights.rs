@@ -56,7 +56,7 @@ pub fn add(scene: Option<&At<SceneSection>>, drafts: &mut [Draft], context: &mut
         } else {
             let Some(kind) = kind_of(light, &label, file, wanted, context) else { continue };
             kinds.push((light.kind.clone(), types.len()));
-            types.push(kind);
+            types.push(kind.named(free_name(&light.name, &types, drafts)));
             types.len() - 1
         };
         let aim = if light.direction == DVec3::ZERO { DVec3::NEG_Z } else { light.direction };
@@ -66,6 +66,17 @@ pub fn add(scene: Option<&At<SceneSection>>, drafts: &mut [Draft], context: &mut
             |context: &mut Context, message: String, hint: &str| context.error(&wanted.span(), message, hint);
         hang(&hanging, &mut types, light.position, aim, drafts, context, &mut report);
     }
+}
+
+/// A type's name stands for it wherever types are told apart, so lights that are called alike and shine unlike
+/// get a number: `P`, `P (2)`.
+fn free_name(name: &str, types: &[Kind], drafts: &[Draft]) -> String {
+    let mut hung = drafts.iter().flat_map(|draft| &draft.luminaires).map(|luminaire| &luminaire.kind.name);
+    let mut taken: Vec<&str> = types.iter().map(|kind| kind.name.as_str()).collect();
+    taken.extend(hung.by_ref().map(String::as_str));
+    let numbered = (2..).map(|number| format!("{name} ({number})"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    names.find(|name| !taken.contains(&name.as_str())).unwrap_or_default()
 }
 
 /// `rotate` that lays a luminaire's +x, a photometric file's 0° plane, towards the node's +X.

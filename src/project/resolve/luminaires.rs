@@ -65,9 +65,16 @@ impl Kind {
             rated_flux_lm: None,
             power_w: None,
             declared_ra: None,
-            c0_azimuth_deg: 0.0,
         };
         Self::of_source(name, source, String::new())
+    }
+
+    /// The type under another name.
+    pub fn named(mut self, name: String) -> Self {
+        if let Some(base) = &mut self.base {
+            base.name.clone_from(&name);
+        }
+        Self { name, ..self }
     }
 
     fn of_source(name: &str, source: Source, file: String) -> Self {
@@ -82,7 +89,6 @@ impl Kind {
             opening: source.opening,
             rated_flux_lm: source.rated_flux_lm,
             power_w: source.power_w,
-            c0_azimuth_deg: source.c0_azimuth_deg,
             file,
         };
         Self {
@@ -201,7 +207,6 @@ fn luminaire_type(
         opening: source.opening,
         rated_flux_lm: source.rated_flux_lm,
         power_w: source.power_w,
-        c0_azimuth_deg: source.c0_azimuth_deg,
         file: section.file.as_ref().map_or(String::new(), |file| file.get_ref().clone()),
     })
 }
@@ -213,7 +218,6 @@ struct Source {
     rated_flux_lm: Option<f64>,
     power_w: Option<f64>,
     declared_ra: Option<f64>,
-    c0_azimuth_deg: f64,
 }
 
 fn from_file(file: &At<String>, context: &mut Context) -> Option<Source> {
@@ -241,10 +245,6 @@ fn from_bytes(bytes: &[u8], file: &str, context: &mut Context) -> Option<Source>
                 rated_flux_lm: photometry.rated_flux_lm,
                 power_w: photometry.power_w,
                 declared_ra: photometry.colour_rendering,
-                c0_azimuth_deg: match photometry.format {
-                    photometry::Format::Eulumdat | photometry::Format::Tm33 => -90.0,
-                    photometry::Format::Lm63 { .. } => 0.0,
-                },
             })
         }
         Err(error) => {
@@ -302,7 +302,6 @@ fn built_in(section: &LuminaireSection, has_area: bool, context: &mut Context) -
         rated_flux_lm: None,
         power_w: None,
         declared_ra: None,
-        c0_azimuth_deg: 0.0,
     })
 }
 

@@ -13,7 +13,7 @@ mod table;
 pub use findings::found;
 pub use indices::index_name;
 pub use lamp::lamp_word;
-pub use places::{place_name, source_label};
+pub use places::{description, place_name, source_label};
 pub use rules::rule_words;
 pub use sentences::said;
 pub use table::{TERMS, Term};
@@ -293,6 +293,7 @@ pub fn verified(lang: Lang, mark: &str) -> &str {
         "two-sources" => word(lang, Term::TwoSources),
         "one-source" => word(lang, Term::OneSource),
         "unverified" => word(lang, Term::Unverified),
+        "unknown" => word(lang, Term::UnknownLimit),
         "project" => word(lang, Term::OfProject),
         _ => mark,
     }

@@ -17,7 +17,8 @@ pub fn place_name(lang: Lang, name: &str) -> Cow<'_, str> {
 
 /// `None` for English, and where the name is none of ours.
 fn made_by_us(lang: Lang, name: &str) -> Option<String> {
-    const ZONES: [&str; 5] = ["task area", "surrounding area", "background area", "ceiling", "volume"];
+    const ZONES: [&str; 6] =
+        ["task area", "surrounding area", "background area", "wall", "ceiling", "volume"];
     if lang == Lang::En {
         return None;
     }
@@ -35,6 +36,11 @@ fn made_by_us(lang: Lang, name: &str) -> Option<String> {
     number("wall ", "")
         .map(|number| phrase(lang, Term::WallNumber, &[number]))
         .or_else(|| number("volume ", " m").map(|number| phrase(lang, Term::VolumeAt, &[&comma(number)])))
+}
+
+/// What a luminaire type without a photometric file is; what a file says of itself stays as it is.
+pub fn description<'a>(lang: Lang, description: &'a str, file: &str) -> Cow<'a, str> {
+    if file.is_empty() { said(lang, description) } else { Cow::Borrowed(description) }
 }
 
 /// Label of a glare source, `A #3 (row-1, mirrored)`.
@@ -58,6 +64,7 @@ mod tests {
             ("Office · volume 1.2 m", "Office · объём на высоте 1,2 м"),
             ("Office · volume", "Office · объём"),
             ("Office · ceiling", "Office · потолок"),
+            ("wall", "стена"),
             ("Office · wall 3", "Office · стена 3"),
             ("surrounding area", "зона непосредственного окружения"),
             ("Desk · background area", "Desk · зона периферии"),
@@ -68,6 +75,8 @@ mod tests {
             assert_eq!(place_name(Lang::En, english), english);
             assert_eq!(place_name(Lang::Ru, english), russian);
         }
+        assert_eq!(description(Lang::Ru, "Isotropic point source", ""), "изотропный точечный источник");
+        assert_eq!(description(Lang::Ru, "Isotropic point source", "a.ldt"), "Isotropic point source");
         assert_eq!(source_label(Lang::Ru, "A #3 (row-1, mirrored)"), "A #3 (row-1, в зеркале)");
         assert_eq!(source_label(Lang::En, "A #3 (row-1, mirrored)"), "A #3 (row-1, mirrored)");
     }

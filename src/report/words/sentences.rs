@@ -150,6 +150,11 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "карты блёскости рассчитывает команда `gershun glare`, а не check",
     ),
     (
+        "{}: {} triangles repeat another one of their surface (double-sided faces) and were dropped",
+        "{}: треугольников, повторяющих другой того же объекта (двусторонние грани), отброшено: {}",
+    ),
+    ("{}: {} triangles without area were dropped", "{}: треугольников без площади отброшено: {}"),
+    (
         "{} light sources of {} are ignored ({}); `lights = true` in [scene] makes them luminaires",
         "источников света: {} – файла {} не используются ({}); `lights = true` в [scene] делает их светильниками",
     ),
@@ -458,6 +463,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("no area lies on this wall", "на этой стене нет области"),
     ("no area lies on this ceiling", "на потолке нет области"),
     ("the project lists no {} in this room", "в проекте для этого помещения не задано: {}"),
+    ("Isotropic point source", "изотропный точечный источник"),
+    ("Lambertian source", "источник по закону Ламберта"),
+    ("point of the CAD file", "точечный источник из файла CAD"),
+    ("spot of the CAD file", "прожектор из файла CAD"),
     ("task area", "рабочая область"),
     ("surrounding area", "зона непосредственного окружения"),
     ("background area", "зона периферии"),
@@ -531,11 +540,13 @@ fn one(tables: &[&Patterns], text: &str) -> Option<String> {
         let stopped = english.strip_suffix('.').filter(|_| !text.ends_with('.'));
         let parts = captured(stopped.unwrap_or(english), text)?;
         let target = if stopped.is_some() { target.trim_end_matches('.') } else { target };
+        let mut before = english.split("{}");
         let mut pieces = target.split("{}");
         let mut whole = pieces.next().unwrap_or_default().to_owned();
         for (part, piece) in parts.iter().zip(pieces) {
-            // What a file says is quoted as it is.
-            let quoted = whole.ends_with('«');
+            // What a file says is quoted as it is, and row 12.1 of a norm is no number.
+            let named = before.next().is_some_and(|english| english.ends_with("row "));
+            let quoted = named || whole.ends_with('«');
             whole.push_str(&if quoted { (*part).to_owned() } else { translated(tables, part) });
             whole.push_str(piece);
         }
@@ -586,6 +597,12 @@ mod tests {
             said(Lang::Ru, "0.0123 % of all rays; see the escaped flux"),
             "0,0123 % всех лучей; см. вышедший поток"
         );
+        assert_eq!(
+            said(Lang::Ru, "the norm's file has no value of u0 for row 12.1"),
+            "в файле нормы нет значения u0 для строки 12.1"
+        );
+        let plane = "Area \"A\" lies at 0.80 m, row 34.2 names a plane at 0.75 m.";
+        assert!(said(Lang::Ru, plane).contains("строка 34.2") && said(Lang::Ru, plane).contains("0,75"));
         assert_eq!(said(Lang::Ru, "nobody says this"), "nobody says this");
         // A sentence within a sentence, its full stop cut.
         assert_eq!(

@@ -214,6 +214,22 @@ impl<'s> Emitters<'s> {
         self.arrival_from(source, point, shine, wanted)
     }
 
+    /// [`Emitters::arrival_if`] for random points of which no density is asked ([`Opening::shine_evenly`]).
+    #[inline]
+    pub fn arrival_evenly(
+        &self,
+        source: &Source,
+        point: DVec3,
+        u: [f64; 2],
+        wanted: impl FnOnce(DVec3) -> bool,
+    ) -> Option<Arrival> {
+        if source.is_behind(point) {
+            return None;
+        }
+        let shine = source.opening.shine_evenly(source.place(point), u)?;
+        self.arrival_from(source, point, shine, wanted)
+    }
+
     #[inline]
     fn arrival_from(
         &self,

@@ -165,26 +165,32 @@ impl Opening {
     /// A point of the opening that shines on `place` (luminaire frame); `None` where nothing of it is
     /// seen from there.
     ///
-    /// Flat: uniform by area, weight 1; a rectangle from near by uniform in the solid angle Ω that it fills, so that
-    /// a point has the weight Ω d²/(A cos θ) and light at its edge does not scatter without limit. A body with the visible area V(p), projected along the direction
+    /// Flat: uniform by area, weight 1. A body with the visible area V(p), projected along the direction
     /// w of the place p from its centre: uniform in that, so that the weight of a point with normal n
     /// that sends ω to the place is V · (n·ω) / ((n·w) A_p(ω)).
     #[inline]
     pub fn shine(&self, place: DVec3, u: [f64; 2]) -> Option<Shine> {
         match self.body() {
-            None => Some(self.near(place).map_or_else(
-                || Shine { at: self.plane_point(u), weight: 1.0 },
-                |near| {
-                    let at = near.point(u);
-                    Shine { at, weight: near.weight(at) }
-                },
-            )),
+            None => Some(Shine { at: self.plane_point(u), weight: 1.0 }),
             Some(body) => {
                 let eye = Onlooker::at(place);
                 let seen_m2 = body.visible_m2(eye);
                 let (piece, u) = body.choose(&seen_m2, u)?;
                 body.shine_of(piece, seen_m2.iter().sum(), place, u)
             }
+        }
+    }
+
+    /// [`Opening::shine`] for random points: a flat rectangle from near by is uniform in the solid angle Ω that it
+    /// fills, a point's weight Ω d²/(A cos θ), so that light right beside it does not scatter without limit.
+    #[inline]
+    pub fn shine_evenly(&self, place: DVec3, u: [f64; 2]) -> Option<Shine> {
+        match self.near(place) {
+            Some(near) => {
+                let at = near.point(u);
+                Some(Shine { at, weight: near.weight(at) })
+            }
+            None => self.shine(place, u),
         }
     }
 
@@ -221,11 +227,10 @@ impl Opening {
             let t = -origin.dot(normal) / direction.dot(normal);
             let met = t > 0.0 && t.is_finite() && plane.covers(origin + direction * t);
             let projected_m2 = two_sided_m2(&plane, direction);
-            let weight = || self.near(origin).map_or(1.0, |near| near.weight(origin + direction * t));
-            return (met && plane.plane_area_m2() > 0.0).then(|| Met {
+            return (met && plane.plane_area_m2() > 0.0).then_some(Met {
                 distance_m: t,
                 projected_m2,
-                weight: weight(),
+                weight: 1.0,
             });
         }
         let body = self.body()?;

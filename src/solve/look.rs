@@ -230,10 +230,10 @@ pub(super) fn add_direct(
         // Directions are taken from the lifted origin that the shadow ray uses: from the surface
         // itself the ray would end behind a plate in which the opening lies.
         let on_front = |direction: DVec3| landing.normal.dot(direction) > 0.0;
-        let (arrival, albedo) = match emitters.arrival_if(source, above, u, on_front) {
+        let (arrival, albedo) = match emitters.arrival_evenly(source, above, u, on_front) {
             Some(arrival) => (arrival, reflectance),
             None if transmittance > 0.0 => {
-                match emitters.arrival_if(source, below, u, |direction| !on_front(direction)) {
+                match emitters.arrival_evenly(source, below, u, |direction| !on_front(direction)) {
                     Some(arrival) => (arrival, transmittance),
                     None => continue,
                 }

@@ -71,7 +71,7 @@ pub fn blocks_needed(gauged: &Gauged, quantity: Quantity, bound: Bound, blocks: 
 }
 
 /// The least factor by which all luminaires may be dimmed together, rounded up to three figures: every
-/// illuminance is linear in it, its interval too. What all else comes to at the factor ([`others_pass`]) is
+/// illuminance is linear in it, its interval too. What all else comes to at the factor (`others_pass`) is
 /// judged at `at(factor)`.
 /// `None` where no illuminance is required from below, or one has no value, or an index of glare must not
 /// fall.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::View;
+use super::{Raster, View};
 
 /// Luminances seen through a view.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,24 +36,15 @@ impl LuminanceImage {
     /// Mean luminance in cd/m² of what the projection shows, Σ L ω / Σ ω over the pixels whose centres lie in it;
     /// of all pixels alike without a view.
     pub fn mean_cd_m2(&self) -> f64 {
-        let raster = self.view.map(|view| view.raster(self.size()));
-        let of_pixel = |index: usize| {
-            let pixel = [index % self.width, index / self.width];
-            match &raster {
-                None => 1.0,
-                Some(raster) if raster.shows(pixel.map(|place| place as f64 + 0.5)) => {
-                    raster.solid_angles_sr(pixel)[0]
-                }
-                Some(_) => 0.0,
-            }
+        let Some(view) = self.view else {
+            let sum: f64 = self.luminance_cd_m2.iter().sum();
+            return sum / self.luminance_cd_m2.len().max(1) as f64;
         };
-        let solid_angles_sr: Vec<f64> =
-            (0..self.luminance_cd_m2.len()).into_par_iter().with_min_len(1 << 12).map(of_pixel).collect();
-        let (mut light, mut seen_sr) = (0.0, 0.0);
-        for (luminance, solid_angle_sr) in self.luminance_cd_m2.iter().zip(solid_angles_sr) {
-            light += luminance * solid_angle_sr;
-            seen_sr += solid_angle_sr;
-        }
+        let raster = view.raster(self.size());
+        let [light, seen_sr] = self.sums(&raster, |pixel| {
+            let is_shown = raster.shows(pixel.map(|place| place as f64 + 0.5));
+            if is_shown { raster.solid_angles_sr(pixel)[0] } else { 0.0 }
+        });
         if seen_sr > 0.0 { light / seen_sr } else { 0.0 }
     }
 
@@ -61,13 +52,75 @@ impl LuminanceImage {
     /// `None` without a view. It is the whole E_v only if the view sees the whole half-space.
     pub fn illuminance_lx(&self) -> Option<f64> {
         let raster = self.view?.raster(self.size());
-        let of_row = |row: usize| {
-            let line = &self.luminance_cd_m2[row * self.width..(row + 1) * self.width];
-            let seen =
-                |(column, luminance): (usize, &f64)| luminance * raster.solid_angles_sr([column, row])[1];
-            line.iter().enumerate().map(seen).sum::<f64>()
+        Some(self.sums(&raster, |pixel| raster.solid_angles_sr(pixel)[1])[0])
+    }
+
+    /// Σ L w and Σ w over all pixels. Where the axis of the view is the middle of the image, mirrored pixels have
+    /// the same w, and one quarter is asked for it.
+    fn sums(&self, raster: &Raster, weight: impl Fn([usize; 2]) -> f64 + Sync) -> [f64; 2] {
+        let [width, height] = self.size();
+        let unlike = |count: usize| if raster.is_centred() { count.div_ceil(2) } else { count };
+        let mirror = |index: usize, count: usize| {
+            let other = count - 1 - index;
+            (raster.is_centred() && other != index).then_some(other)
         };
-        let rows: Vec<f64> = (0..self.height).into_par_iter().map(of_row).collect();
-        Some(rows.iter().sum())
+        let of_row = |row: usize| {
+            let lines = [Some(row), mirror(row, height)].into_iter().flatten();
+            let lines: Vec<&[f64]> =
+                lines.map(|row| &self.luminance_cd_m2[row * width..(row + 1) * width]).collect();
+            let mut sums = [0.0; 2];
+            for column in 0..unlike(width) {
+                let weight = weight([column, row]);
+                for place in [Some(column), mirror(column, width)].into_iter().flatten() {
+                    for line in &lines {
+                        sums[0] += weight * line[place];
+                        sums[1] += weight;
+                    }
+                }
+            }
+            sums
+        };
+        let rows: Vec<[f64; 2]> = (0..unlike(height)).into_par_iter().map(of_row).collect();
+        rows.iter().fold([0.0; 2], |sum, row| [sum[0] + row[0], sum[1] + row[1]])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::image::Projection;
+
+    /// Catches: a quarter that is not mirrored, middle rows or columns that count twice, mirrors of an image that
+    /// is cut out aside.
+    #[test]
+    fn the_sums_of_a_quarter_are_those_of_all_pixels() {
+        let fisheye = Projection::AngularFisheye { horizontal_deg: 180.0, vertical_deg: 140.0 };
+        let flat = Projection::Perspective { horizontal_deg: 70.0, vertical_deg: 50.0 };
+        for projection in [fisheye, flat] {
+            for ([width, height], shift) in
+                [([8, 6], [0.0; 2]), ([7, 5], [0.0; 2]), ([1, 3], [0.0; 2]), ([8, 5], [0.25, -0.1])]
+            {
+                let mut view = View::new(projection, DVec3::ZERO, DVec3::X, DVec3::Z).expect("a view");
+                view.shift = shift;
+                let raster = view.raster([width, height]);
+                let luminance: Vec<f64> = (0..width * height).map(|k| 1.0 + (k * k % 7) as f64).collect();
+                let (mut light, mut seen, mut lx) = (0.0, 0.0, 0.0);
+                for (index, luminance) in luminance.iter().enumerate() {
+                    let pixel = [index % width, index / width];
+                    let [plain, projected] = raster.solid_angles_sr(pixel);
+                    let is_shown = raster.shows(pixel.map(|place| place as f64 + 0.5));
+                    light += if is_shown { luminance * plain } else { 0.0 };
+                    seen += if is_shown { plain } else { 0.0 };
+                    lx += luminance * projected;
+                }
+                let image = LuminanceImage::new(width, height, Some(view), luminance);
+                let of_image = [image.mean_cd_m2(), image.illuminance_lx().expect("a view")];
+                for (value, plain) in of_image.into_iter().zip([light / seen, lx]) {
+                    assert!((value / plain - 1.0).abs() < 1e-12, "{width} × {height}: {value} {plain}");
+                }
+            }
+        }
     }
 }

@@ -20,6 +20,8 @@ pub struct Raster {
     pixel: [f64; 2],
     /// Places beyond this radius lie outside of the projection.
     largest_radius: f64,
+    /// Whether the image is not cut out aside.
+    is_centred: bool,
 }
 
 impl Raster {
@@ -35,7 +37,8 @@ impl Raster {
     ) -> Self {
         let corner = [(2.0 * shift[0] - 1.0) * half[0], (2.0 * shift[1] + 1.0) * half[1]];
         let pixel = [2.0 * half[0] / size[0] as f64, 2.0 * half[1] / size[1] as f64];
-        Self { projection, right, up, forward, corner, pixel, largest_radius }
+        let is_centred = shift == [0.0; 2];
+        Self { projection, right, up, forward, corner, pixel, largest_radius, is_centred }
     }
 
     /// Unit direction of the place `at` (columns from the left edge, rows from the upper one; the
@@ -44,6 +47,11 @@ impl Raster {
         let [x, y] = self.on_plane(at);
         let (sin_per_radius, cos) = self.bent(length([x, y]))?;
         Some(self.right * (x * sin_per_radius) + self.up * (y * sin_per_radius) + self.forward * cos)
+    }
+
+    /// Whether the axis of the view is the middle of the image, so that its quarters are alike.
+    pub fn is_centred(&self) -> bool {
+        self.is_centred
     }
 
     /// Whether the place `at` lies within the projection.

@@ -94,7 +94,7 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
 const NO_TASK: &str = "the eyes of a map have no task";
 
 /// The usual effort of a swift map. Rays by powers of two: Sobol points fill their strata only so.
-pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 512, rough: 0.012, walks: 32 };
+pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 512, rough: 0.0105, walks: 32 };
 
 /// All maps of a project.
 pub fn maps(project: &Project, method: MapMethod) -> Vec<Mapped> {

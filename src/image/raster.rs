@@ -37,7 +37,7 @@ impl Raster {
     ) -> Self {
         let corner = [(2.0 * shift[0] - 1.0) * half[0], (2.0 * shift[1] + 1.0) * half[1]];
         let pixel = [2.0 * half[0] / size[0] as f64, 2.0 * half[1] / size[1] as f64];
-        let is_centred = shift == [0.0; 2];
+        let is_centred = shift.iter().all(|part| *part == 0.0);
         Self { projection, right, up, forward, corner, pixel, largest_radius, is_centred }
     }
 

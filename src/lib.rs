@@ -261,7 +261,8 @@ fn solve_world(
                 total.counts.add(sheet.counts);
             }
             total.blocks.push(sheets.len());
-            biases::add(&mut total.biases, world, settings, &answers, prepared.emitters());
+            let scenes = &project.light_scenes;
+            biases::add(&mut total.biases, world, scenes, settings, &answers, prepared.emitters());
             return stop;
         }
         target = (2 * target).min(most);

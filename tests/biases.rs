@@ -49,3 +49,23 @@ fn what_a_run_leaves_out_stands_in_its_list() {
     assert_eq!(plain.biases.len(), 1, "{:?}", plain.biases);
     assert!(listed(&plain, "integrated numerically"));
 }
+
+/// Catches: dimmed gear whose power is taken for granted, and a remark on luminaires that nobody dims.
+#[test]
+fn power_of_dimmed_luminaires_is_said_to_be_in_proportion() {
+    let file = ("panel.ldt".to_owned(), std::fs::read("scenes/office/panel.ldt").expect("an example"));
+    let with = |dim: f64| {
+        let text = format!(
+            "[scene]\nbox = {{ size = [5, 4, 3], floor = 0.3, walls = 0.5, ceiling = 0.7 }}\n\
+             [luminaires.A]\nfile = \"panel.ldt\"\n\
+             [[place]]\nluminaire = \"A\"\nat = [2, 2, 2.9]\ndim = {dim}\n{}",
+            projects::spot("desk", [2.5, 1.0, 0.8], "\"E_h\"")
+        );
+        let effort = Effort { particles: 256, ..Effort::default() };
+        projects::run(&text, std::slice::from_ref(&file), 2, effort)
+    };
+    assert!(listed(&with(0.5), "need power in proportion"));
+    for undimmed in [0.0, 1.0] {
+        assert!(!listed(&with(undimmed), "need power in proportion"), "{undimmed}");
+    }
+}

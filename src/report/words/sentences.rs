@@ -134,6 +134,14 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "light of a side that faces out of the room counts as emitted and escaped in the flux balance",
         "свет стороны, обращённой наружу, входит в баланс потоков как излучённый и вышедший",
     ),
+    (
+        "A dimmed luminaire is taken to need power in proportion to its light.",
+        "Принято, что мощность диммированного светильника пропорциональна его свету.",
+    ),
+    (
+        "real gear needs more when dimmed: W/m² per 100 lx, and what dimming saves, flatter",
+        "реальная аппаратура при диммировании потребляет больше: Вт/м² на 100 лк и экономия от диммирования приукрашены",
+    ),
     ("Walks in a cavity without absorption were cut.", "Блуждания в полости без поглощения были оборваны."),
     ("{} walks", "блужданий: {}"),
     (

@@ -100,7 +100,7 @@ fn wanted(project: &Project, arguments: &Arguments) -> Result<Vec<Wanted>, Strin
     let mut all = Vec::new();
     for (index, world) in project.worlds.iter().enumerate() {
         for camera in &world.cameras {
-            let (size, view) = sized(camera.view, camera.size, arguments.size)?;
+            let (size, view) = sized(&camera.name, camera.view, camera.size, arguments.size)?;
             let light_scene = asked.unwrap_or(0);
             let (name, room) = (camera.name.clone(), camera.room);
             all.push(Wanted { world: index, room, name, view, size, light_scene });
@@ -135,7 +135,7 @@ fn viewpoints(project: &Project, arguments: &Arguments, asked: Option<usize>) ->
             let direction = viewpoint.directions[0];
             let up = if direction.z.abs() > 1.0 - 1e-9 { glam::DVec3::Y } else { glam::DVec3::Z };
             let view = View::new(fisheye, viewpoint.eye, direction, up).map_err(|error| error.to_string())?;
-            let (size, view) = sized(view, FISHEYE, arguments.size)?;
+            let (size, view) = sized(&viewpoint.name, view, FISHEYE, arguments.size)?;
             all.push(Wanted {
                 world: index,
                 room: viewpoint.room,
@@ -150,11 +150,18 @@ fn viewpoints(project: &Project, arguments: &Arguments, asked: Option<usize>) ->
 }
 
 /// A view in the size that was asked for, its pixels square.
-fn sized(view: View, own: [usize; 2], asked: Option<[usize; 2]>) -> Result<([usize; 2], View), String> {
+fn sized(
+    name: &str,
+    view: View,
+    own: [usize; 2],
+    asked: Option<[usize; 2]>,
+) -> Result<([usize; 2], View), String> {
     let Some(size) = asked else { return Ok((own, view)) };
     let projection = view.projection.with_square_pixels(size);
-    let view =
-        View::new(projection, view.eye, view.forward(), view.up()).map_err(|error| error.to_string())?;
+    let view = View::new(projection, view.eye, view.forward(), view.up()).map_err(|_| {
+        let [width, height] = size;
+        format!("{name}: a picture of {width}x{height} would show more from top to bottom than its projection has\n  hint: take a size that is wider for its height, or other cameras by --camera")
+    })?;
     Ok((size, view))
 }
 

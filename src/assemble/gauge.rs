@@ -18,6 +18,9 @@ use crate::units::Undefined;
 /// brighter ones would dazzle without the method's knowing. A convention of this program.
 const BRIGHT_SURFACE_CD_M2: f64 = 500.0;
 
+/// Said where a viewpoint looks in directions that have nothing to do with its task.
+const TASK_LEFT_OUT: &str = "directions that have the task behind the eye are left out";
+
 /// Said where blocks agree on what they may all have missed.
 const UNSEEN: &str = "no block has found reflected or emitted light here, though surfaces reflect or shine: there is no upper end";
 
@@ -191,7 +194,7 @@ impl Context<'_> {
     /// The worst direction of a viewpoint for a requirement, with what is to be said of it: its end next to
     /// the limit for all directions, the other one uncorrected. Worst is the largest value under an upper
     /// limit, the smallest above a lower one. A direction in which no source is visible is never the worst,
-    /// unless it is so in all.
+    /// unless it is so in all; one that has the task behind the eye is not asked, and that is said.
     fn worst_view(
         &self,
         room: usize,
@@ -208,11 +211,16 @@ impl Context<'_> {
             Bound::Min(_) => f64::min,
         };
         let (mut worst, mut dark): (Option<(Gauged, Vec<String>)>, Option<Gauged>) = (None, None);
+        let mut behind = None;
         for &index in &views {
             let (gauged, notes) = self.of_view(room, index, planned, each);
             let value = match &gauged.value {
                 Err(undefined) if nothing_glares(undefined) => {
                     dark = Some(gauged);
+                    continue;
+                }
+                Err(undefined) if undefined.reason == BEHIND => {
+                    behind = Some(gauged);
                     continue;
                 }
                 Err(_) => return (gauged, Vec::new()),
@@ -231,7 +239,11 @@ impl Context<'_> {
             });
         }
         let nowhere = || Gauged::undefined(Undefined::because("the viewpoint has no direction"));
-        worst.unwrap_or_else(|| (dark.unwrap_or_else(nowhere), Vec::new()))
+        let left_out = behind.is_some().then(|| TASK_LEFT_OUT.to_owned());
+        let (gauged, mut notes) =
+            worst.unwrap_or_else(|| (dark.or(behind).unwrap_or_else(nowhere), Vec::new()));
+        notes.extend(left_out);
+        (gauged, notes)
     }
 
     /// The quantity that a requirement asks of one direction, and what is to be said of it there. UGR's own

@@ -14,6 +14,7 @@ pub mod field;
 pub mod ggr;
 pub mod gr;
 pub mod gradient;
+mod image_parts;
 pub mod index;
 pub mod luminances;
 pub mod of_image;

@@ -113,6 +113,7 @@ pub fn glare_of_image(
     }
     sight.e_v_lx = options.measured_e_v_lx.unwrap_or_else(|| field.illuminance_lx());
     sight.background = Nits(sight.e_indirect_lx() / std::f64::consts::PI);
+    sight.parts = super::image_parts::parts(&field, &found);
     sight.zones = options.task.map(|task| field.zones(&task));
     // Without a task there is nothing to compare: five rows of the same reason would tell no more.
     let asked = INDICES.iter().filter(|index| index.zones.is_none() || options.task.is_some());

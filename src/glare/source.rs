@@ -158,15 +158,17 @@ impl Sight {
     /// The light of the sources by its angle: part by part where parts are known.
     pub fn by_angle(&self) -> Vec<AtAngle> {
         let mut all = Vec::with_capacity(self.sources.len() + self.parts.len());
-        for (index, source) in self.sources.iter().enumerate() {
-            let parts = self.parts.iter().filter(|part| part.source == index);
-            let before = all.len();
-            all.extend(parts.map(|part| AtAngle {
+        let mut of: Vec<Vec<&StrayPart>> = vec![Vec::new(); self.sources.len()];
+        for part in &self.parts {
+            of[part.source].push(part);
+        }
+        for (source, parts) in self.sources.iter().zip(of) {
+            all.extend(parts.iter().map(|part| AtAngle {
                 off_axis_deg: part.off_axis_deg,
                 eye_lx: part.share * source.eye_lx,
                 is_part: true,
             }));
-            if all.len() == before {
+            if parts.is_empty() {
                 let GlareSource { off_axis_deg, eye_lx, .. } = *source;
                 all.push(AtAngle { off_axis_deg, eye_lx, is_part: false });
             }

@@ -5,7 +5,7 @@ use super::source::{AtAngle, Sight};
 use crate::units::Undefined;
 
 /// Angles for which the forms hold, degrees: general, age-adjusted, Stiles–Holladay.
-const VALID_DEG: [[f64; 2]; 3] = [[0.1, 100.0], [3.0, 30.0], [3.0, 30.0]];
+pub(super) const VALID_DEG: [[f64; 2]; 3] = [[0.1, 100.0], [3.0, 30.0], [3.0, 30.0]];
 
 /// Share of the light from which on it is told that a form does not hold for it.
 const TOLD: f64 = 1e-3;

@@ -13,8 +13,9 @@ use crate::sphere;
 pub struct Zone {
     axis: DVec3,
     front: DVec3,
-    /// Cosines of the outer and the inner angle.
-    cosines: [f64; 2],
+    /// Squared chords of the outer and the inner angle, 4 sin²(θ/2) = 2 − 2 cos θ: they tell small angles apart, and
+    /// none is below that of the axis itself, where a product of unit vectors may exceed 1.
+    chords2: [f64; 2],
     /// Solid angle of what lies before the eye, sr.
     size_sr: f64,
     /// Whether the eye's plane cuts some of it off.
@@ -28,9 +29,9 @@ impl Zone {
         let aside_rad = axis.angle_between(front);
         let size_sr =
             cap_before_sr(to_deg.to_radians(), aside_rad) - cap_before_sr(from_deg.to_radians(), aside_rad);
-        let cosines = [to_deg, from_deg].map(|angle_deg: f64| angle_deg.to_radians().cos());
+        let chords2 = [to_deg, from_deg].map(|deg: f64| 4.0 * (0.5 * deg.to_radians()).sin().powi(2));
         let cut = aside_rad + to_deg.to_radians() > 0.5 * PI;
-        (size_sr > 0.0).then_some(Self { axis, front, cosines, size_sr, cut })
+        (size_sr > 0.0).then_some(Self { axis, front, chords2, size_sr, cut })
     }
 
     /// Solid angle of what lies before the eye, sr.
@@ -45,8 +46,12 @@ impl Zone {
 
     /// Whether a unit direction lies in it.
     pub fn contains(&self, direction: DVec3) -> bool {
-        let cos = self.axis.dot(direction);
-        cos >= self.cosines[0] && cos <= self.cosines[1] && (!self.cut || self.front.dot(direction) > 0.0)
+        self.is_between(direction) && (!self.cut || self.front.dot(direction) > 0.0)
+    }
+
+    fn is_between(&self, direction: DVec3) -> bool {
+        let [outer, inner] = self.chords2;
+        (inner..=outer).contains(&self.axis.distance_squared(direction))
     }
 
     /// π over its solid angle in it, 0 elsewhere.
@@ -56,17 +61,17 @@ impl Zone {
 
     /// Uniform between the cones, what lies behind the eye included.
     pub(super) fn pdf(&self, direction: DVec3) -> f64 {
-        let cos = self.axis.dot(direction);
-        let between = cos >= self.cosines[0] && cos <= self.cosines[1];
-        if between { 0.5 * FRAC_1_PI / (self.cosines[1] - self.cosines[0]) } else { 0.0 }
+        let [outer, inner] = self.chords2;
+        if self.is_between(direction) { FRAC_1_PI / (outer - inner) } else { 0.0 }
     }
 
     pub(super) fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let [outer, inner] = self.cosines;
-        let cos = outer + u * (inner - outer);
-        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        let [outer, inner] = self.chords2;
+        // 1 − cos θ, uniform between the cones.
+        let rise = 0.5 * (outer + u * (inner - outer));
+        let sin = (rise * (2.0 - rise)).max(0.0).sqrt();
         let (s, c) = (TAU * v).sin_cos();
-        sphere::frame(self.axis) * DVec3::new(sin * c, sin * s, cos)
+        sphere::frame(self.axis) * DVec3::new(sin * c, sin * s, 1.0 - rise)
     }
 }
 
@@ -123,5 +128,24 @@ mod tests {
         }
         let whole = Zone::new(DVec3::Z, DVec3::Z, [0.0, 60.0]).map(|zone| zone.size_sr());
         assert!(whole.is_some_and(|sr| (sr - PI).abs() < 1e-12), "a cone of 120° is π: {whole:?}");
+    }
+
+    /// Catches: what lies on the axis itself counted as within the inner cone, a cone that is too narrow for cosines.
+    #[test]
+    fn a_cone_holds_its_axis_and_what_is_drawn_in_it_however_narrow_it_is() {
+        let inner = |angle_deg: f64| if angle_deg < 1.0 { 0.99 } else { 0.999_999 };
+        for k in 0..200u32 {
+            let axis =
+                sphere::uniform_sphere([f64::from(k) / 200.0, f64::from(k) * 0.618_034 % 1.0]).normalize();
+            for angle_deg in [1e-6, 1e-3, 5.0, 60.0] {
+                let zone = Zone::new(axis, axis, [0.0, angle_deg]).expect("it is in sight");
+                assert!(zone.contains(axis), "{axis} {angle_deg}°");
+                assert!((zone.pdf(axis) * zone.size_sr() - 1.0).abs() < 1e-9, "{axis} {angle_deg}°");
+                let drawn = zone.sample([1.0 - inner(angle_deg), 0.3]);
+                assert!(zone.contains(drawn), "{axis} {angle_deg}°: {drawn}");
+                let angle = axis.cross(drawn).length().asin().to_degrees();
+                assert!(angle > 0.9 * angle_deg && angle <= angle_deg, "{angle}° of {angle_deg}°");
+            }
+        }
     }
 }

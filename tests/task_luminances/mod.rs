@@ -279,4 +279,12 @@ fn a_task_that_cannot_be_seen_is_refused_with_its_line() {
     assert!(views[0].indices.iter().all(|index| index.estimate.is_ok()), "{:?}", views[0].indices);
     let reasons = views[1].indices.iter().filter_map(|index| index.estimate.as_ref().err());
     assert_eq!(reasons.filter(|why| why.reason == "the task lies behind the eye").count(), KEYS.len());
+    // What is certain where the task is seen is not hidden by where it is not.
+    for (bound, verdict) in [("max = 0.01", Verdict::Fail), ("min = 0.01", Verdict::Pass)] {
+        let require = format!("[[require]]\nviewpoint = \"Seat\"\nquantity = \"L_task\"\n{bound}\n");
+        let outcome = run(&format!("{sweep}task = [3, 2, 0.8]\n{require}"), &[], 32, Effort::default());
+        let found = &outcome.requirements[0];
+        assert_eq!(found.verdict, verdict, "{bound}: {:?}", found.value);
+        assert!(found.note.contains("directions that have the task behind the eye"), "{}", found.note);
+    }
 }

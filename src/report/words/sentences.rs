@@ -280,6 +280,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "то, что лежит позади плоскости зрачка, в зоны не входит",
     ),
     ("the task lies behind the eye", "рабочее поле лежит позади глаза"),
+    (
+        "directions that have the task behind the eye are left out",
+        "направления, при которых рабочее поле лежит позади глаза, не учтены",
+    ),
     ("the surround of the task is dark", "окружение рабочего поля тёмное"),
     ("the far field is dark", "периферия поля зрения тёмная"),
     (

@@ -184,7 +184,10 @@ impl Context<'_> {
                 let ugr = self.glare(room, index, planned.views[index].light_scene, self.alpha, &[]).ugr;
                 let weights = self.initial(planned.views[index].light_scene, entry);
                 let zones = self.zones(room, index, &weights);
-                (ugr.value.is_err() || ugr.se <= 3.5 * r) && zones.is_none_or(|zones| zones.is_within(r))
+                let field = self.field(room, index, &weights);
+                (ugr.value.is_err() || ugr.se <= 3.5 * r)
+                    && zones.is_none_or(|zones| zones.is_within(r))
+                    && field.is_none_or(|field| field.is_within(r))
             });
             areas && views
         })

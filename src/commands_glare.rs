@@ -271,7 +271,7 @@ fn options(glare: &Glare, image: &LuminanceImage) -> Result<Options, String> {
             Some(PositionChoice::Table) => PositionModel::Table,
         },
         given: Given {
-            age_years: glare.age.unwrap_or(usual.given.age_years),
+            age_years: glare.age,
             low_light: glare.low_light,
             ceiling_coverage: glare.ceiling_coverage,
             ground: glare.ground.map(|[mean_lx, reflectance]| Ground { mean_lx, reflectance }),

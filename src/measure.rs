@@ -3,6 +3,7 @@
 //! without its uncertainty.
 
 pub mod area;
+pub mod beside;
 pub mod flux;
 pub mod glare_sources;
 pub mod intensity;

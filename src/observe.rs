@@ -13,11 +13,12 @@ use crate::emitters::{Sighted, sighted_from};
 use crate::glare::of_image::{Options, glare_of_image};
 use crate::glare::ugr::ugr;
 use crate::image::{Projection, View};
+use crate::measure::beside::{self, Beside, Blockwise};
 use crate::measure::glare_sources::{Convention, SourceModel};
 use crate::measure::zones::ZoneLight;
 use crate::measure::{Answers, room_ugr, view, weights};
 use crate::outcome::{GlareSourceOutcome, IndexOutcome, Interval, UgrTableOutcome, ViewpointOutcome};
-use crate::plan::{BEHIND, PlannedTask, TaskZones, concerns_task};
+use crate::plan::{BEHIND, NOT_ASKED, PlannedTask, TaskZones, concerns_task, field_of_view};
 use crate::project::{Project, Room, Viewpoint, World};
 use crate::query::{Demand, Kernel, Receiver};
 use crate::solve::{Effort, Method, Prepared, Sheet, answer, prepare, thumbnail};
@@ -131,6 +132,8 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
     }
     let tasks: Vec<Vec<Option<PlannedTask>>> =
         world.viewpoints.iter().map(|viewpoint| ask_tasks(viewpoint, &mut demand)).collect();
+    let fields: Vec<Vec<Option<usize>>> =
+        world.viewpoints.iter().map(|viewpoint| ask_fields(viewpoint, &mut demand)).collect();
     let prepared = prepare(&world.scene, &demand, Method::Links, Effort::default(), seed);
     let sheets: Vec<Sheet> =
         (0..blocks as u64).into_par_iter().map(|block| answer(&prepared, block)).collect();
@@ -143,8 +146,12 @@ fn of_world(project: &Project, world: &World, conventions: &[Convention], blocks
         let planned = tasks[index][number].as_ref().ok_or(BEHIND)?;
         Ok(ZoneLight::of_rows(&answers, planned, weights))
     };
-    let one =
-        |index: usize| of_viewpoint(project, world, index, &prepared, conventions, Sheets::All, light, zones);
+    let field = |index: usize, number: usize, weights: &[f64]| {
+        let row = fields[index][number].ok_or(NOT_ASKED)?;
+        Ok(Blockwise::of_zone(&answers, row, weights))
+    };
+    let found = Light { at_eye: light, zones, field };
+    let one = |index: usize| of_viewpoint(project, world, index, &prepared, conventions, Sheets::All, &found);
     let each: Vec<Vec<Observed>> = (0..world.viewpoints.len()).into_par_iter().map(one).collect();
     each.into_iter().flatten().collect()
 }
@@ -162,6 +169,29 @@ fn ask_tasks(viewpoint: &Viewpoint, demand: &mut Demand) -> Vec<Option<PlannedTa
     viewpoint.directions.iter().map(one).collect()
 }
 
+/// Adds a receiver for the field of view of every direction whose mean luminance is asked for.
+fn ask_fields(viewpoint: &Viewpoint, demand: &mut Demand) -> Vec<Option<usize>> {
+    let one = |&gaze: &DVec3| {
+        let row = demand.rows();
+        demand.receivers.push(field_of_view(&viewpoint.indices, viewpoint.eye, gaze)?);
+        Some(row)
+    };
+    viewpoint.directions.iter().map(one).collect()
+}
+
+/// Why the observers alone have no GR.
+const NO_AREA: &str = "GR is rated against the illuminance of an area, which `gershun check` computes";
+
+/// Light for a viewpoint, the number of a direction and factors: two sources of it, one way to take it.
+struct Light<E, Z, F> {
+    /// In the eye.
+    at_eye: E,
+    /// Of the zones about the task.
+    zones: Z,
+    /// Mean luminance of the field of view.
+    field: F,
+}
+
 /// Which views get a sheet with a card, whose picture takes most of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sheets {
@@ -171,34 +201,42 @@ pub enum Sheets {
     None,
 }
 
-/// A viewpoint in all its directions; `light` is that in the eye for a viewpoint and the number of a direction,
-/// `zones` that of the zones about its task.
-#[allow(clippy::too_many_arguments, reason = "two callers, one for each way to find the light")]
-fn of_viewpoint(
+/// A viewpoint in all its directions.
+fn of_viewpoint<E, Z, F>(
     project: &Project,
     world: &World,
     index: usize,
     prepared: &Prepared,
     conventions: &[Convention],
     sheets: Sheets,
-    light: impl Fn(usize, usize, &[f64], &Sighted) -> view::EyeLight,
-    zones: impl Fn(usize, usize, &[f64]) -> Result<ZoneLight, &'static str>,
-) -> Vec<Observed> {
+    light: &Light<E, Z, F>,
+) -> Vec<Observed>
+where
+    E: Fn(usize, usize, &[f64], &Sighted) -> view::EyeLight,
+    Z: Fn(usize, usize, &[f64]) -> Result<ZoneLight, &'static str>,
+    F: Fn(usize, usize, &[f64]) -> Result<Blockwise, &'static str>,
+{
     let alpha = 1.0 - project.accuracy.confidence;
     let viewpoint = &world.viewpoints[index];
     let light_scene = &project.light_scenes[viewpoint.light_scene.unwrap_or(0)];
     let weights = weights(world, light_scene, &world.rooms[viewpoint.room], false);
     let sighted = sighted_from(prepared.emitters(), viewpoint.eye, prepared.seed(), viewpoint.highlights);
+    let ceiling = beside::ceiling(world, &world.rooms[viewpoint.room], &weights);
     let mut found = Vec::new();
     for &convention in conventions {
         let start = found.len();
         let mut glares = Vec::with_capacity(viewpoint.directions.len());
         for (number, &gaze) in viewpoint.directions.iter().enumerate() {
-            let zones = zones(index, number, &weights);
-            let zones = zones.as_ref().map_err(|reason| *reason);
-            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention, zones };
-            let light = light(index, number, &weights, &sighted);
-            let glare = view::glare(&light, prepared.emitters(), &sighted, &asked, &weights, alpha);
+            let zones = (light.zones)(index, number, &weights);
+            let beside = Beside {
+                zones: zones.as_ref().map_err(|reason| *reason),
+                field: (light.field)(index, number, &weights),
+                ground: Err(NO_AREA),
+                ceiling,
+            };
+            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention, beside };
+            let at_eye = (light.at_eye)(index, number, &weights, &sighted);
+            let glare = view::glare(&at_eye, prepared.emitters(), &sighted, &asked, &weights, alpha);
             found.push(Observed {
                 viewpoint: viewpoint.name.clone(),
                 light_scene: light_scene.name.clone(),

@@ -3,6 +3,7 @@
 //! nobody needs to know of norms or observers until the answers are measured.
 
 mod areas;
+mod ground;
 mod hidden;
 mod lattice;
 mod norm_areas;
@@ -13,7 +14,10 @@ mod zones;
 
 use glam::DVec3;
 
-pub use tasks::{BEHIND, PlannedTask, TaskZones, concerns_task};
+pub use ground::PlannedGround;
+pub use tasks::{
+    BEHIND, FIELD_HALF_ANGLE_DEG, NOT_ASKED, PlannedTask, TaskZones, concerns_task, field_of_view,
+};
 
 use crate::grid::{self, Grid, GridError};
 use crate::outcome::{Bound, Modified};
@@ -110,6 +114,10 @@ pub struct PlannedView {
     pub highlights: bool,
     /// Zones about its task; `None` where no index asks for them, or the task lies behind the eye.
     pub task: Option<PlannedTask>,
+    /// Row of the mean luminance of its field of view times π; `None` where no index asks for it.
+    pub field: Option<usize>,
+    /// The illuminated area that it is rated against, or why there is none.
+    pub ground: Result<PlannedGround, &'static str>,
 }
 
 /// A requirement and what it is measured on.
@@ -245,6 +253,13 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
     areas::plan(project, world, &mut plan, &mut errors);
     for (index, viewpoint) in world.viewpoints.iter().enumerate() {
         let indices = indices(world, index);
+        let named = viewpoint.area.map(|area| world.areas[area].name.as_str());
+        let areas = &plan.rooms[viewpoint.room].areas;
+        let ground = if indices.contains(&"GR") {
+            ground::ground(&world.scene, areas, viewpoint, named)
+        } else {
+            Err(NOT_ASKED)
+        };
         for (&direction, &azimuth_deg) in viewpoint.directions.iter().zip(&viewpoint.azimuths_deg) {
             let row = plan.ask(Receiver {
                 point: viewpoint.eye,
@@ -258,6 +273,7 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 let rows = about.receivers(viewpoint.eye).map(|receiver| plan.ask(receiver));
                 PlannedTask { about, rows }
             });
+            let field = field_of_view(&indices, viewpoint.eye, direction).map(|field| plan.ask(field));
             plan.rooms[viewpoint.room].views.push(PlannedView {
                 name: viewpoint.name.clone(),
                 viewpoint: index,
@@ -269,6 +285,8 @@ pub fn plan(project: &Project, world: &World) -> Result<Plan, Vec<PlanError>> {
                 light_scene: viewpoint.light_scene.unwrap_or(0),
                 highlights: viewpoint.highlights,
                 task,
+                field,
+                ground,
             });
         }
     }

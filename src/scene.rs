@@ -14,7 +14,7 @@ use crate::geometry::welded::closed_surfaces;
 use crate::luminaire::Luminaire;
 use crate::material::{Bsdf, Material};
 
-pub use furniture::inside_furniture;
+pub use furniture::{in_a_surface, inside_furniture};
 
 /// Everything light can meet.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! `[[require]]` on figures of a view: every index of the table, judged in its worst direction, with the
 //! reason where a viewpoint has none.
 
+mod beside_views;
 mod common;
 mod projects;
 mod task_luminances;
@@ -18,8 +19,8 @@ const ROOM: &str = "[scene]\nbox = { size = [6, 4, 2.8], floor = 0.3, walls = 0.
     [[place]]\nluminaire = \"A\"\nat = [4.5, 1.0, 2.7]\n[[place]]\nluminaire = \"A\"\nat = [4.5, 3.0, 2.7]\n\
     [[viewpoint]]\nname = \"Seat\"\neye = [1, 2, 1.2]\nsweep = { from = 0, to = 180, step = 90 }\n";
 
-/// What no room tells of its observers.
-const NEVER: [&str; 6] = ["GGR", "DGR", "VCP", "GR", "f_TI", "L_mean"];
+/// What this room does not tell of its observers: too little of its ceiling shines, it has no area and no road.
+const NEVER: [&str; 3] = ["GGR", "GR", "f_TI"];
 
 fn require(key: &str, bound: &str) -> String {
     format!("[[require]]\nviewpoint = \"Seat\"\nquantity = \"{key}\"\n{bound}\n")
@@ -65,7 +66,8 @@ fn every_index_of_the_table_can_be_required_and_its_worst_direction_is_judged() 
         let value = *found.value.as_ref().unwrap_or_else(|why| panic!("{}: {why}", index.key));
         assert_eq!(value.to_bits(), most.to_bits(), "{}: {each:?}", index.key);
         assert!(found.lo_joint <= value && value <= found.hi_joint, "{}", index.key);
-        assert!(found.hi_joint > found.lo_joint, "{} has an interval", index.key);
+        // Where nothing glares all are comfortable, without doubt.
+        assert!(found.hi_joint > found.lo_joint || index.key == "VCP", "{} has an interval", index.key);
         assert_eq!(found.verdict, Verdict::Pass, "{}", index.key);
         assert!(found.note.contains("L_b = E_ind/π"), "{}: {}", index.key, found.note);
         // Between the best and the worst direction: nothing but the worst decides.

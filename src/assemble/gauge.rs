@@ -4,11 +4,13 @@
 use super::Context;
 use crate::glare::source::nothing_glares;
 use crate::luminaire::LuminaireType;
+use crate::measure::beside::{self, Beside, Blockwise, Lit};
 use crate::measure::glare_sources::Convention;
 use crate::measure::zones::ZoneLight;
 use crate::measure::{Gauged, area, intensity, room_ugr, view};
+use crate::norm::Light;
 use crate::outcome::{Bound, UgrTableOutcome, Verdict};
-use crate::plan::{BEHIND, PlannedRequirement, Subject};
+use crate::plan::{BEHIND, NOT_ASKED, PlannedRequirement, Subject};
 use crate::project::{Declared, Room};
 use crate::quantity::{Property, Quantity};
 use crate::scene::Channel;
@@ -273,6 +275,31 @@ impl Context<'_> {
         Some(ZoneLight::of_rows(&self.answers, planned, weights))
     }
 
+    /// Mean luminance of the field of view of a planned view, where it is asked for.
+    pub(super) fn field(&self, room: usize, index: usize, weights: &[f64]) -> Option<Blockwise> {
+        let row = self.plan.rooms[room].views[index].field?;
+        Some(Blockwise::of_zone(&self.answers, row, weights))
+    }
+
+    /// The area that a planned view is rated against, with its illuminance under the same factors.
+    fn ground(
+        &self,
+        room: usize,
+        index: usize,
+        weights: &[f64],
+        indices: &[&'static str],
+    ) -> Result<Lit<'_>, &'static str> {
+        let planned = &self.plan.rooms[room];
+        let asked = planned.views[index]
+            .ground
+            .and_then(|ground| if indices.contains(&"GR") { Ok(ground) } else { Err(NOT_ASKED) });
+        let ground = asked?;
+        let area = &planned.areas[ground.area];
+        let blocks = area::blocks(&self.answers, &area.quantities[ground.quantity], weights, Light::All);
+        let mean_lx = Blockwise::of_area(&blocks);
+        Ok(Lit { name: &area.name, mean_lx, reflectance: ground.reflectance })
+    }
+
     /// Glare of a planned view; `indices` are wanted beside UGR.
     pub(super) fn glare(
         &self,
@@ -288,8 +315,13 @@ impl Context<'_> {
         let convention = Convention::default();
         let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
         let zones = self.zones(room, index, &weights).ok_or(BEHIND);
-        let zones = zones.as_ref().map_err(|reason| *reason);
-        let asked = view::Asked { gaze: planned.direction, indices, convention, zones };
+        let beside = Beside {
+            zones: zones.as_ref().map_err(|reason| *reason),
+            field: self.field(room, index, &weights).ok_or(NOT_ASKED),
+            ground: self.ground(room, index, &weights, indices),
+            ceiling: beside::ceiling(self.world, &self.world.rooms[room], &weights),
+        };
+        let asked = view::Asked { gaze: planned.direction, indices, convention, beside };
         view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
     }
 }

@@ -150,7 +150,7 @@ impl Detected {
             luminance: self.luminance,
             solid_angle_sr: self.solid_angle_sr,
             position_index,
-            off_table,
+            ugr_share: if off_table { 0.0 } else { 1.0 },
             off_axis_deg: super::field::angle(DVec3::Z, self.direction).to_degrees(),
             eye_lx: self.eye_lx,
             extent: None,

@@ -5,15 +5,16 @@ use super::source::{Sight, positive};
 use super::veiling::stiles_holladay;
 use crate::units::Undefined;
 
+/// Why there is no GR where nobody says what is illuminated.
+pub const NO_GROUND: &str = "the ground's reflectance and mean horizontal illuminance are not given";
+
 /// GR = 27 + 24 lg(L_vl/L_ve^0.9), CIE 112:1994; L_vl = 10 Σ E_eye/θ² from the luminaires, L_ve =
 /// 0.035 ρ E_hav/π from the ground.
 ///
 /// # Errors
 /// The ground is not given, or no source shines.
 pub fn glare_rating(sight: &Sight) -> Result<f64, Undefined> {
-    let ground = sight.given.ground.ok_or_else(|| {
-        Undefined::because("the ground's reflectance and mean horizontal illuminance are not given")
-    })?;
+    let ground = sight.given.ground.ok_or_else(|| Undefined::because(NO_GROUND))?;
     let from_luminaires = positive(stiles_holladay(sight)?, super::source::NO_SOURCE)?;
     let environment = 0.035 * ground.reflectance * ground.mean_lx / std::f64::consts::PI;
     let environment = positive(environment, "the ground is dark")?;

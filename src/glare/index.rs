@@ -75,7 +75,7 @@ pub const INDICES: &[Index] = &[
     index("UGP", "unified glare probability", "1", "Hirning 2014", ugp::ugp, ugp::validity),
     index("UGP2", "unified glare probability 2", "1", "Hirning 2017", ugp::ugp2, always),
     index("UGR_exp", "experimental UGR", "1", "Fisekis 2003", ugr_exp::ugr_experimental, always),
-    judged(index("GGR", "great-room glare rating", "1", "CIE 147:2002", ggr::ggr, ggr::validity)),
+    judged(index("GGR", "great-room glare rating", "1", "CIE 147:2002", ggr::ggr, always)),
     index("DGR", "discomfort glare rating", "1", "Guth 1963", vcp::dgr, vcp::validity),
     Index {
         more_is_better: true,
@@ -131,11 +131,15 @@ pub struct Reading {
 impl Index {
     /// What was assumed for it beside the view, to be printed with it.
     pub fn assumption(&self, given: &Given) -> Option<String> {
+        let aged = |usual: f64| given.age_years.unwrap_or(usual);
         match self.key {
             "DGP" if given.low_light => Some(format!("{}, low-light factor", given.dgp.words())),
             "DGP" => Some(given.dgp.words().to_owned()),
-            "L_veil" => Some(format!("an eye of {} years, pigment {}", given.age_years, given.pigment)),
-            "L_veil_age" | "f_TI" => Some(format!("an eye of {} years", given.age_years)),
+            "L_veil" => {
+                Some(format!("an eye of {} years, pigment {}", aged(veiling::USUAL_AGE), given.pigment))
+            }
+            "L_veil_age" => Some(format!("an eye of {} years", aged(veiling::USUAL_AGE))),
+            "f_TI" => Some(format!("an eye of {} years", aged(threshold_increment::STANDARD_AGE))),
             _ => None,
         }
     }

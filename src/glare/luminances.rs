@@ -41,9 +41,7 @@ pub fn l_b(sight: &Sight) -> Result<f64, Undefined> {
 /// # Errors
 /// It is not known.
 pub fn l_mean(sight: &Sight) -> Result<f64, Undefined> {
-    let mean = sight
-        .mean
-        .ok_or_else(|| Undefined::because("the mean luminance of the field of view is not known"))?;
+    let mean = sight.mean.ok_or_else(|| Undefined::because(super::vcp::NO_MEAN))?;
     finite(mean.0)
 }
 

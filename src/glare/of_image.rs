@@ -188,7 +188,7 @@ fn convention(options: &Options, threshold: Nits) -> String {
          years, pigment {}{given}",
         0.5 * options.search.radius_rad,
         options.position.words(),
-        options.given.age_years,
+        options.given.age_years.unwrap_or(super::veiling::USUAL_AGE),
         options.given.pigment,
     )
 }

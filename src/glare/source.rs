@@ -25,9 +25,9 @@ pub struct GlareSource {
     pub solid_angle_sr: f64,
     /// Position index P, 1 on the line of sight.
     pub position_index: f64,
-    /// Whether it lies where the table of CIE 117 has no P, so that UGR and its kin leave it out. Other indices
-    /// were made with a formula for P and count it.
-    pub off_table: bool,
+    /// Share of its L²ω/P² that UGR and its kin count: 0 where the table of CIE 117 has no P, less than 1 where a part
+    /// of it lies there. Other indices were made with a formula for P and count all of it.
+    pub ugr_share: f64,
     /// Angle between the line of sight and the source, θ, degrees.
     pub off_axis_deg: f64,
     /// Illuminance that it gives on the plane of the eye, L ω cos θ, lx.
@@ -91,11 +91,18 @@ pub struct Sight {
     pub given: Given,
 }
 
+impl GlareSource {
+    /// Whether UGR and its kin leave it out altogether.
+    pub fn is_off_table(&self) -> bool {
+        !(self.ugr_share > 0.0)
+    }
+}
+
 /// Assumptions about observer and surroundings that no view can tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
-    /// Age of the observer, years.
-    pub age_years: f64,
+    /// Age of the observer, years; `None`: 25 for veiling luminance, and 23 for f_TI, as EN 13201-3 has it.
+    pub age_years: Option<f64>,
     /// Eye pigmentation p of CIE 146: 0 black, 0.5 brown, 1.0 light, 1.2 very light.
     pub pigment: f64,
     /// Coefficients of DGP.
@@ -140,10 +147,10 @@ impl DgpForm {
 }
 
 impl Default for Given {
-    /// A reader of 25 with brown eyes; nothing assumed about the surroundings.
+    /// A reader with brown eyes, of the age for which a form was made; nothing assumed about the surroundings.
     fn default() -> Self {
         Self {
-            age_years: 25.0,
+            age_years: None,
             pigment: 0.5,
             dgp: DgpForm::Evalglare,
             low_light: false,

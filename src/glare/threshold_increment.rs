@@ -7,6 +7,8 @@ use crate::units::Undefined;
 
 /// Angles from the line of sight within which a luminaire counts, degrees.
 pub const ANGLES_DEG: [f64; 2] = [0.1, 60.0];
+/// Age for which EN 13201-3 has f_TI, years: 9.86 [1 + (23/66.4)⁴] = 10.0.
+pub const STANDARD_AGE: f64 = 23.0;
 /// Below this angle the small-angle form holds, degrees.
 const SMALL_ANGLE_DEG: f64 = 1.5;
 /// Road luminance above which the other formula holds, cd/m².
@@ -20,7 +22,7 @@ const DARKEST_ROAD: f64 = 0.05;
 /// # Errors
 /// A source within 0.1° of the line of sight.
 pub fn veiling_en_13201(sight: &Sight) -> Result<f64, Undefined> {
-    let age = sight.given.age_years;
+    let age = sight.given.age_years.unwrap_or(STANDARD_AGE);
     over_sources(sight, ANGLES_DEG[0], |theta| {
         if theta <= SMALL_ANGLE_DEG {
             10.0 / theta.powi(3) + 5.0 / (theta * theta) * (1.0 + (age / 62.5).powi(4))

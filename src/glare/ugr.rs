@@ -1,7 +1,7 @@
 //! Unified glare rating. The background luminance belongs to the *indirect vertical* illuminance at
 //! the eye (L_b = E_i/π): with the sources' own light in it the index comes out low.
 
-use super::source::{ALL_OFF_TABLE, GlareSource, NO_SOURCE, positioned_sum, positive, square};
+use super::source::{ALL_OFF_TABLE, Extent, GlareSource, NO_SOURCE, positioned_sum, positive, square};
 use crate::units::{Nits, Undefined};
 
 /// Below this projected area (m²) UGR weights the intensity instead of the luminance, CIE 147.
@@ -21,12 +21,20 @@ pub const VALID_SOLID_ANGLE_SR: [f64; 2] = [3e-4, 0.1];
 /// No source shines, the background is not positive, or a source is no physical one.
 pub fn ugr(sources: &[GlareSource], background: Nits) -> Result<f64, Undefined> {
     index(sources, background, |source| match source.extent {
-        Some(extent) if extent.projected_area_m2 < SMALL_SOURCE_M2 => {
+        Some(extent) if is_small(source) => {
             let per_distance = extent.intensity_cd / extent.distance_m;
             Ok(200.0 * per_distance * per_distance)
         }
         Some(_) | None => square(source),
     })
+}
+
+/// Whether UGR takes a source by its intensity. One that fills much of the view is no small one, however
+/// little of it is projected: a luminous ceiling right over the eye is seen on edge.
+fn is_small(source: &GlareSource) -> bool {
+    let [_, largest] = VALID_SOLID_ANGLE_SR;
+    let of_small_area = |extent: Extent| extent.projected_area_m2 < SMALL_SOURCE_M2;
+    source.extent.is_some_and(of_small_area) && !(source.solid_angle_sr > largest)
 }
 
 /// UGR = 8 lg(0.25/L_b · Σ L²ω/P²) for sources of any size, as the tables of CIE 190 take it.
@@ -43,9 +51,11 @@ fn index(
     background: Nits,
     term: impl Fn(&GlareSource) -> Result<f64, Undefined>,
 ) -> Result<f64, Undefined> {
-    let counts = |source: &GlareSource| if source.off_table { Ok(0.0) } else { term(source) };
+    let counts = |source: &GlareSource| {
+        if source.is_off_table() { Ok(0.0) } else { Ok(source.ugr_share * term(source)?) }
+    };
     let sum = positioned_sum(sources, 2, counts).map_err(|undefined| {
-        let ignored = sources.iter().any(|source| source.off_table && source.eye_lx > 0.0);
+        let ignored = sources.iter().any(|source| source.is_off_table() && source.eye_lx > 0.0);
         if ignored && undefined.reason == NO_SOURCE { Undefined::because(ALL_OFF_TABLE) } else { undefined }
     })?;
     let background = positive(background.0, "the background luminance is not positive")?;
@@ -56,10 +66,9 @@ fn index(
 pub fn validity(sources: &[GlareSource]) -> Vec<String> {
     let [smallest, largest] = VALID_SOLID_ANGLE_SR;
     let area_m2 = |source: &GlareSource| source.extent.map(|extent| extent.projected_area_m2);
-    let of_ordinary_size =
-        |source: &&GlareSource| area_m2(source).is_none_or(|area_m2| area_m2 >= SMALL_SOURCE_M2);
+    let of_ordinary_size = |source: &&GlareSource| !is_small(source);
     let count = |is: &dyn Fn(&GlareSource) -> bool| {
-        let counted = sources.iter().filter(|source| !source.off_table).filter(of_ordinary_size);
+        let counted = sources.iter().filter(|source| !source.is_off_table()).filter(of_ordinary_size);
         counted.filter(|source| is(source)).count()
     };
     [
@@ -85,7 +94,6 @@ pub fn validity(sources: &[GlareSource]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::glare::source::Extent;
 
     fn panel(luminance: f64, solid_angle_sr: f64, position_index: f64) -> GlareSource {
         let distance_m: f64 = 3.0;
@@ -94,7 +102,7 @@ mod tests {
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
-            off_table: false,
+            ugr_share: 1.0,
             off_axis_deg: 20.0,
             eye_lx: luminance * solid_angle_sr * 0.94,
             extent: Some(Extent {
@@ -137,6 +145,29 @@ mod tests {
         // Smaller still, at the same intensity: the luminance soars, the index stays.
         source.luminance = Nits(1e7);
         assert!((ugr(&[source], Nits(10.0)).unwrap() - ordinary).abs() < 1e-9);
+    }
+
+    /// Catches: a luminous ceiling right over the eye, whose projected area is next to nothing, weighed as a point.
+    #[test]
+    fn what_fills_the_view_is_no_small_source() {
+        let mut source = panel(1500.0, 3.0, 2.0);
+        source.extent = source.extent.map(|extent| Extent { projected_area_m2: 0.001, ..extent });
+        let by_luminance = ugr_by_luminance(&[source], Nits(100.0)).unwrap();
+        assert!((ugr(&[source], Nits(100.0)).unwrap() - by_luminance).abs() < 1e-12);
+        assert_eq!(validity(&[source]).len(), 1, "and it is told that it is large");
+        source.solid_angle_sr = 0.01;
+        assert!((ugr(&[source], Nits(100.0)).unwrap() - by_luminance).abs() > 1.0, "a small one is");
+    }
+
+    /// Catches: a source of which a part lies off the table counted whole, or not at all.
+    #[test]
+    fn ugr_counts_the_share_of_a_source_that_its_table_knows() {
+        let whole = panel(2000.0, 0.01, 2.0);
+        let half = GlareSource { ugr_share: 0.5, ..whole };
+        let drop = ugr(&[whole], Nits(20.0)).unwrap() - ugr(&[half], Nits(20.0)).unwrap();
+        assert!((drop - 8.0 * 2f64.log10()).abs() < 1e-12, "{drop}");
+        let none = GlareSource { ugr_share: 0.0, ..whole };
+        assert_eq!(ugr(&[none], Nits(20.0)).unwrap_err().reason, ALL_OFF_TABLE);
     }
 
     #[test]

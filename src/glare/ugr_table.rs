@@ -296,7 +296,7 @@ fn visible_sources(input: &TableInput, spacing_m: f64, rows: [usize; 2], sight: 
                 luminance: Nits(intensity_cd / projected_area_m2),
                 solid_angle_sr: projected_area_m2 / (distance_m * distance_m),
                 position_index,
-                off_table: false,
+                ugr_share: 1.0,
                 off_axis_deg: off_axis.acos().to_degrees(),
                 eye_lx: intensity_cd * off_axis / (distance_m * distance_m),
                 extent: Some(Extent { projected_area_m2, intensity_cd, distance_m }),

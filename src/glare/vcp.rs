@@ -6,6 +6,9 @@ use statrs::function::erf::erf;
 use super::source::{GlareSource, Sight, luminance, positive};
 use crate::units::Undefined;
 
+/// Why there is no index where F is not known.
+pub const NO_MEAN: &str = "the mean luminance of the field of view is not known";
+
 /// DGR above which nobody is comfortable, and below which all are.
 pub const DGR_RANGE: [f64; 2] = [20.0, 750.0];
 
@@ -18,8 +21,8 @@ pub fn dgr(sight: &Sight) -> Result<f64, Undefined> {
     if sight.sources.is_empty() {
         return Ok(0.0);
     }
-    let mean = sight.mean.map_or(f64::NAN, |mean| mean.0);
-    let field = positive(mean, "the mean luminance of the field of view is not known")?;
+    let mean = sight.mean.ok_or_else(|| Undefined::because(NO_MEAN))?;
+    let field = positive(mean.0, "the field of view is dark")?;
     let mut sum = 0.0;
     for source in &sight.sources {
         let position = positive(source.position_index, "a source has no valid position index")?;

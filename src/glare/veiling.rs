@@ -7,6 +7,13 @@ use crate::units::Undefined;
 /// Angles for which the forms hold, degrees: general, age-adjusted, Stiles–Holladay.
 pub(super) const VALID_DEG: [[f64; 2]; 3] = [[0.1, 100.0], [3.0, 30.0], [3.0, 30.0]];
 
+/// Age of the observer where none is given, years.
+pub const USUAL_AGE: f64 = 25.0;
+
+fn age(sight: &Sight) -> f64 {
+    sight.given.age_years.unwrap_or(USUAL_AGE)
+}
+
 /// Share of the light from which on it is told that a form does not hold for it.
 const TOLD: f64 = 1e-3;
 
@@ -16,7 +23,7 @@ const TOLD: f64 = 1e-3;
 /// # Errors
 /// A source within 0.1° of the line of sight.
 pub fn general(sight: &Sight) -> Result<f64, Undefined> {
-    let (age, pigment) = (sight.given.age_years, sight.given.pigment);
+    let (age, pigment) = (age(sight), sight.given.pigment);
     over_sources(sight, VALID_DEG[0][0], |theta| {
         let aged = (5.0 / (theta * theta) + 0.1 * pigment / theta) * (1.0 + (age / 62.5).powi(4));
         10.0 / theta.powi(3) + aged + 0.0025 * pigment
@@ -28,7 +35,7 @@ pub fn general(sight: &Sight) -> Result<f64, Undefined> {
 /// # Errors
 /// A source within 0.1° of the line of sight.
 pub fn age_adjusted(sight: &Sight) -> Result<f64, Undefined> {
-    let aged = 1.0 + (sight.given.age_years / 70.0).powi(4);
+    let aged = 1.0 + (age(sight) / 70.0).powi(4);
     over_sources(sight, VALID_DEG[0][0], |theta| 10.0 * aged / (theta * theta))
 }
 

@@ -34,7 +34,7 @@ impl Blocks {
     }
 
     /// Hidden light on the mean over the points; a few points where nothing at all was found do not count.
-    fn hidden_mean(&self) -> f64 {
+    pub(super) fn hidden_mean(&self) -> f64 {
         if self.is_unseen() {
             return f64::INFINITY;
         }

@@ -164,22 +164,22 @@ impl Frame {
         Self { gaze, up: if gaze.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z }, model }
     }
 
-    /// P, and whether UGR ignores what is there.
-    fn position(&self, direction: DVec3, notes: &mut Vec<String>) -> (f64, bool) {
+    /// P, and the share that UGR counts of what is there.
+    fn position(&self, direction: DVec3, notes: &mut Vec<String>) -> (f64, f64) {
         let mut note = |text: &str| {
             if !notes.iter().any(|known| known == text) {
                 notes.push(text.into());
             }
         };
         match self.model.position(self.gaze, self.up, direction) {
-            Position::Index(index) => (index, false),
+            Position::Index(index) => (index, 1.0),
             Position::BelowTable(index) => {
                 note("a source lies below the line of sight: Iwata–Osterhaus position index");
-                (index, false)
+                (index, 1.0)
             }
             Position::OffTable(index) => {
                 note(OFF_TABLE);
-                (index, true)
+                (index, 0.0)
             }
         }
     }
@@ -196,7 +196,7 @@ fn luminaire(
     let cos = one.direction.dot(frame.gaze);
     let area_sr = one.solid_angle_sr.value;
     let is_point = !(area_sr > 0.0);
-    let (luminance, solid_angle_sr, (position_index, off_table)) = match convention.sources {
+    let (luminance, solid_angle_sr, (position_index, ugr_share)) = match convention.sources {
         SourceModel::Subdivided if !is_point => {
             let pieces = one.pieces.iter().map(|piece| {
                 (piece.direction, piece.visible_sr, weight * piece.normal_lx / piece.visible_sr)
@@ -220,7 +220,7 @@ fn luminaire(
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
-            off_table,
+            ugr_share,
             off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
             eye_lx: weight * one.normal_lx.value * cos,
             extent: Some(Extent {
@@ -243,30 +243,30 @@ fn luminaire(
     })
 }
 
-/// Pieces (direction, sr, cd/m²) as one source with the same Σ L²ω/P²: luminance, solid angle, P and whether
-/// UGR ignores it.
+/// Pieces (direction, sr, cd/m²) as one source with the same Σ L²ω/P²: luminance, solid angle, P and the share that
+/// UGR counts.
 ///
-/// 1/P² is the mean over the solid angle, L² the mean weighted by ω/P². A piece that UGR ignores adds to the
-/// solid angle and not to the sum, unless it ignores them all.
+/// 1/P² is the mean over the solid angle, L² the mean weighted by ω/P². Pieces that UGR ignores are in all of them,
+/// and not in the share.
 fn merged(
     pieces: impl Iterator<Item = (DVec3, f64, f64)>,
     frame: &Frame,
     notes: &mut Vec<String>,
-) -> Option<(f64, f64, (f64, bool))> {
-    let (mut size_sr, mut weighted_sr, mut squares) = (0.0, [0.0; 2], [0.0; 2]);
+) -> Option<(f64, f64, (f64, f64))> {
+    let (mut size_sr, mut weighted_sr, mut squares, mut of_ugr) = (0.0, 0.0, 0.0, 0.0);
     for (direction, piece_sr, luminance) in pieces {
         if !(direction.dot(frame.gaze) > 0.0 && piece_sr > 0.0) {
             continue;
         }
         size_sr += piece_sr;
-        let (index, off_table) = frame.position(direction, notes);
-        weighted_sr[usize::from(off_table)] += piece_sr / (index * index);
-        squares[usize::from(off_table)] += luminance * luminance * piece_sr / (index * index);
+        let (index, ugr_share) = frame.position(direction, notes);
+        let seen_sr = piece_sr / (index * index);
+        weighted_sr += seen_sr;
+        squares += luminance * luminance * seen_sr;
+        of_ugr += ugr_share * luminance * luminance * seen_sr;
     }
-    let off_table = !(weighted_sr[0] > 0.0);
-    let (weighted_sr, squares) = (weighted_sr[usize::from(off_table)], squares[usize::from(off_table)]);
     let index = f64::sqrt(size_sr / weighted_sr).max(1.0);
-    (weighted_sr > 0.0).then(|| (f64::sqrt(squares / weighted_sr), size_sr, (index, off_table)))
+    (squares > 0.0).then(|| (f64::sqrt(squares / weighted_sr), size_sr, (index, of_ugr / squares)))
 }
 
 /// Illuminance on the plane of the eye straight from a luminous surface, with its standard error, lx.
@@ -291,13 +291,13 @@ fn luminous_surface(
     let ahead = || surface.pieces.iter().filter(|piece| piece.direction.dot(frame.gaze) > 0.0);
     let pieces = ahead()
         .map(|piece| (piece.direction, piece.visible_sr, luminance * piece.passed_sr / piece.visible_sr));
-    let (mean, solid_angle_sr, (position_index, off_table)) = merged(pieces, frame, notes)?;
+    let (mean, solid_angle_sr, (position_index, ugr_share)) = merged(pieces, frame, notes)?;
     let passed_sr: f64 = ahead().map(|piece| piece.passed_sr).sum();
-    // Relative error of Σ ω/P², by which the pieces count.
+    // Relative error of Σ ω/P², by which the pieces count for UGR, or for the others where it ignores them all.
     let (mut weighted_sr, mut variance) = (0.0, 0.0);
     for piece in ahead() {
-        let (index, ignored) = frame.position(piece.direction, notes);
-        if ignored == off_table {
+        let (index, counts) = frame.position(piece.direction, notes);
+        if counts > 0.0 || !(ugr_share > 0.0) {
             weighted_sr += piece.passed_sr / (index * index);
             variance += (piece.se_sr / (index * index)).powi(2);
         }
@@ -311,7 +311,7 @@ fn luminous_surface(
             luminance: Nits(mean),
             solid_angle_sr,
             position_index,
-            off_table,
+            ugr_share,
             off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
             eye_lx,
             extent: Some(Extent {
@@ -355,7 +355,7 @@ fn highlight(
     let pieces = bright().flatten();
     let pieces = pieces
         .map(|piece| (piece.direction, piece.solid_angle_sr / count, weight * piece.square.max(0.0).sqrt()));
-    let (luminance, solid_angle_sr, (position_index, off_table)) = merged(pieces, frame, notes)?;
+    let (luminance, solid_angle_sr, (position_index, ugr_share)) = merged(pieces, frame, notes)?;
     let light = |piece: &GlintPiece| weight * piece.luminance_cd_m2 * piece.solid_angle_sr;
     let sums = |of: &dyn Fn(&GlintPiece) -> f64| -> Estimate {
         Estimate::from_blocks(&bright().map(|pieces| pieces.map(of).sum()).collect::<Vec<f64>>())
@@ -371,7 +371,7 @@ fn highlight(
             luminance: Nits(luminance),
             solid_angle_sr,
             position_index,
-            off_table,
+            ugr_share,
             off_axis_deg: direction.dot(frame.gaze).clamp(-1.0, 1.0).acos().to_degrees(),
             eye_lx: on_eye.value,
             extent: None,

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::beside::Beside;
 use super::glare_sources::{Convention, sources};
 use super::stray::parts;
 use super::zones::ZoneLight;
@@ -29,8 +30,8 @@ pub struct Asked<'a> {
     pub indices: &'a [&'static str],
     /// How sources and positions are taken.
     pub convention: Convention,
-    /// Light of the zones about the task, or why it is not known.
-    pub zones: Result<&'a ZoneLight, &'a str>,
+    /// What is known beside it.
+    pub beside: Beside<'a>,
 }
 
 /// Glare of one observer in one direction under one light scene.
@@ -121,19 +122,25 @@ pub fn glare(
         } else {
             Vec::new()
         },
-        zones: Some(asked.zones.map(ZoneLight::zones).map_err(Undefined::because)),
-        ..Sight::default()
+        mean: asked.beside.mean(),
+        zones: Some(asked.beside.zones.map(ZoneLight::zones).map_err(Undefined::because)),
+        given: asked.beside.given(),
     };
+    let [mean_cd_m2, ground_lx] = asked.beside.errors();
     let error = SightError {
         e_indirect_lx: indirect.se.hypot(surfaces_se),
         e_direct_lx: Some(from_luminaires.se.hypot(surfaces_se)),
+        mean_cd_m2,
+        ground_lx,
         sources: found.counted.iter().map(|counted| counted.error).collect(),
     };
     let skewed = Skewed {
+        alpha,
+        beside: asked.beside,
         indirect: indirect.widenings(alpha),
         direct: from_luminaires.widenings(alpha).into_iter().fold(1.0, f64::max),
     };
-    let gauge = |index: &Index| match (index.zones, asked.zones) {
+    let gauge = |index: &Index| match (index.zones, asked.beside.zones) {
         (Some(figure), Ok(zones)) => zones.gauge(figure, alpha),
         _ => gauge(index, &sight, &error, indirect.n, alpha, &skewed),
     };
@@ -149,12 +156,13 @@ pub fn glare(
         .counted
         .iter()
         .zip(&terms)
-        .filter(|(counted, _)| !counted.source.off_table)
+        .filter(|(counted, _)| !counted.source.is_off_table())
         .map(|(counted, term)| GlareSourceOutcome {
             label: counted.label.clone(),
             luminance_cd_m2: counted.source.luminance.0,
             solid_angle_sr: counted.source.solid_angle_sr,
-            position_index: counted.source.position_index,
+            // By which UGR counts it, where a part of it lies off the table.
+            position_index: counted.source.position_index / counted.source.ugr_share.sqrt(),
             visible_fraction: counted.visible_fraction,
             share: term / total,
         })
@@ -170,8 +178,12 @@ pub fn glare(
                 if !sight.parts.is_empty() && gauged.value.is_ok() && STRAYED.contains(&index.key) {
                     notes.push(IN_PARTS.to_owned());
                 }
-                if let (Some(_), Ok(zones)) = (index.zones, asked.zones) {
+                if let (Some(_), Ok(zones)) = (index.zones, asked.beside.zones) {
                     notes.extend(zones.words.iter().cloned());
+                }
+                if gauged.value.is_ok() {
+                    notes.extend(asked.beside.words(index.key));
+                    notes.extend((index.key == "GR" && !(asked.gaze.z < 0.0)).then(|| LEVEL.to_owned()));
                 }
                 GaugedIndex { index, gauged, notes }
             })
@@ -186,20 +198,27 @@ pub fn glare(
 /// What is said of veiling luminance: an approximation that no interval holds.
 const IN_PARTS: &str = "sources with a size count by their parts, each at its own angle, within about 2 %";
 
+/// What is said of a glare rating for a level line of sight, or one that rises.
+const LEVEL: &str = "CIE 112 has GR for lines of sight below the horizontal";
+
 /// A source's part of Σ L²ω/P², by intensity where it is small.
 fn term(source: &GlareSource) -> f64 {
     ugr(&[*source], Nits(0.25)).map_or(0.0, |index| 10f64.powf(index / 8.0))
 }
 
 /// How much farther than Student's intervals reach because blocks are skewed.
-struct Skewed {
+struct Skewed<'a> {
+    /// Risk of the interval.
+    alpha: f64,
+    /// What some indices take beside the light in the eye.
+    beside: Beside<'a>,
     /// By the indirect light in the eye: below and above.
     indirect: [f64; 2],
     /// By what comes straight from luminaires, on either side.
     direct: f64,
 }
 
-impl Skewed {
+impl Skewed<'_> {
     /// Factors below and above for an index: what falls as the light grows reaches the other way.
     fn of(&self, index: &Index, sight: &Sight) -> [f64; 2] {
         let step_lx = 1e-3 * sight.e_v_lx.abs();
@@ -211,7 +230,17 @@ impl Skewed {
             _ => true,
         };
         let [below, above] = self.indirect;
-        let sides = if rises { [below, above] } else { [above, below] };
+        let mut sides = if rises { [below, above] } else { [above, below] };
+        for (brighter, known) in self.beside.brighter(sight, |known| 1e-3 * known.estimate.value.abs()) {
+            let (Ok(here), Ok(there)) = ((index.value)(sight), (index.value)(&brighter)) else { continue };
+            let [below, above] = known.estimate.widenings(self.alpha);
+            // What does not move with it is not widened by it.
+            if there > here {
+                sides = [sides[0].max(below), sides[1].max(above)];
+            } else if there < here {
+                sides = [sides[0].max(above), sides[1].max(below)];
+            }
+        }
         sides.map(|factor| factor.max(self.direct))
     }
 }
@@ -223,17 +252,18 @@ fn gauge(
     error: &SightError,
     blocks: usize,
     alpha: f64,
-    skewed: &Skewed,
+    skewed: &Skewed<'_>,
 ) -> Gauged {
     let value = (index.value)(sight);
     let spread =
         value.clone().and_then(|_| standard_error(index.value, sight, error, blocks.saturating_sub(1)));
     match (value, spread) {
-        (Err(reason), _) | (Ok(_), Err(reason)) => Gauged::undefined(reason),
+        (Err(reason), _) | (Ok(_), Err(reason)) => Gauged::undefined(skewed.beside.reason(reason)),
         (Ok(value), Ok(Spread { se, degrees })) => {
             let half = if se > 0.0 { quantile(1.0 - 0.5 * alpha, degrees) * se } else { 0.0 };
             let [below, above] = skewed.of(index, sight).map(|factor| factor * half);
-            Gauged { value: Ok(value), se, lo: value - below, hi: value + above, place: None }
+            let gauged = Gauged { value: Ok(value), se, lo: value - below, hi: value + above, place: None };
+            skewed.beside.with_hidden(gauged, sight, index.value)
         }
     }
 }

@@ -14,7 +14,7 @@ pub const COLUMN_WORDS: [(&str, &str); 11] = [
     ("u0", "uniformity E_min / mean on the task, at least"),
     ("ugr", "UGR of the room, at most"),
     ("m", "discomfort index M = 10^((UGR + 4.8)/16) of the room, at most"),
-    ("gr", "glare rating R_G, at most; gershun does not compute it: not assessed"),
+    ("gr", "glare rating R_G, at most; at observers of the norm's own, which are not laid: not assessed"),
     ("ra", "colour rendering index R_a, at least; declared, never computed"),
     ("kp", "pulsation of the illuminance, %, at most; declared, never computed"),
     ("em_cylindrical", "mean cylindrical illuminance at eye height, lx, at least"),

@@ -79,7 +79,7 @@ pub fn card(
     let emitters = prepared.emitters();
     let mut counted = sources(emitters, sighted, view.direction, weights, convention, view.e_v_lx).counted;
     // What UGR leaves out is not shown among what makes it.
-    counted.retain(|source| !source.source.off_table);
+    counted.retain(|source| !source.source.is_off_table());
     let term = |source: &GlareSource| ugr(&[*source], Nits(0.25)).unwrap_or(f64::NEG_INFINITY);
     counted.sort_by(|a, b| term(&b.source).total_cmp(&term(&a.source)));
     let up = if view.direction.z.abs() > 0.999 { DVec3::Y } else { DVec3::Z };
@@ -242,7 +242,7 @@ fn moved(
                     luminance: Nits(luminance),
                     solid_angle_sr,
                     position_index,
-                    off_table,
+                    ugr_share: if off_table { 0.0 } else { 1.0 },
                     off_axis_deg: cos.clamp(-1.0, 1.0).acos().to_degrees(),
                     eye_lx: luminance * solid_angle_sr * cos,
                     extent: Some(Extent {

@@ -5,12 +5,13 @@ use rayon::prelude::*;
 
 use crate::emitters::{Emitters, Lookout, SeenPiece, Sighted, sighted_from};
 use crate::estimate::Estimate;
+use crate::measure::beside::{self, Beside};
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
 use crate::outcome::{IndexOutcome, Interval};
 use crate::project::{GlareMap, Project, World};
 use crate::query::{Demand, Kernel, Receiver};
-use crate::scene::{Scene, inside_furniture};
+use crate::scene::{Scene, in_a_surface, inside_furniture};
 use crate::solve::{Effort, GlanceEffort, Mended, Method, Prepared, Sheet, answer, glances, mend, prepare};
 use crate::units::Undefined;
 
@@ -93,6 +94,15 @@ pub fn approximations(map: &Mapped) -> Vec<&'static str> {
 /// Why no eye of a map has luminances of task and surround; its project may not ask for them.
 const NO_TASK: &str = "the eyes of a map have no task";
 
+/// Why the eyes of a map have no VCP and GR.
+const ON_VIEWPOINTS: &str = "maps do not compute it: list a viewpoint, and run `check`";
+
+/// What is known beside the views of a map.
+fn beside_views(world: &World, map: &GlareMap, weights: &[f64]) -> Beside<'static> {
+    let ceiling = beside::ceiling(world, &world.rooms[map.room], weights);
+    Beside { zones: Err(NO_TASK), field: Err(ON_VIEWPOINTS), ground: Err(ON_VIEWPOINTS), ceiling }
+}
+
 /// The usual effort of a swift map. Rays by powers of two: Sobol points fill their strata only so.
 pub const USUAL: GlanceEffort = GlanceEffort { replicates: 4, rays: 512, rough: 0.0105, walks: 32 };
 
@@ -166,6 +176,7 @@ pub fn swift_eyes(
     let alpha = 1.0 - project.accuracy.confidence;
     let convention = Convention::default();
     let lookout = Lookout::new(emitters, seed);
+    let beside = beside_views(world, map, &weights);
     let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
         if let Some(shut) = shut_eye(world, map, position) {
             return shut;
@@ -178,7 +189,7 @@ pub fn swift_eyes(
                 from_luminaires: from_luminaires(&sighted, emitters, gaze, &weights),
                 indirect: Estimate::from_blocks(&of_replicates),
             };
-            let asked = view::Asked { gaze, indices: &map.indices, convention, zones: Err(NO_TASK) };
+            let asked = view::Asked { gaze, indices: &map.indices, convention, beside };
             let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
             let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
             (glare.ugr.interval(), further)
@@ -246,7 +257,7 @@ pub fn unbiased_at(
     for (map, eyes) in all {
         let light_scene = &project.light_scenes[map.light_scene.unwrap_or(0)];
         let weights = weights(world, light_scene, &world.rooms[map.room], false);
-        let sights = sights(map);
+        let (sights, beside) = (sights(map), beside_views(world, map, &weights));
         let eye = |(number, &position): (usize, &DVec3)| -> MappedEye {
             if let Some(shut) = shut_eye(world, map, position) {
                 return shut;
@@ -255,7 +266,7 @@ pub fn unbiased_at(
             let views = sights.iter().enumerate().map(|(direction, &gaze)| {
                 let row = first_rows[receiver + number] + direction;
                 let light = view::EyeLight::of_row(&answers, row, &weights);
-                let asked = view::Asked { gaze, indices: &map.indices, convention, zones: Err(NO_TASK) };
+                let asked = view::Asked { gaze, indices: &map.indices, convention, beside };
                 let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
                 let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
                 (glare.ugr.interval(), further)
@@ -275,6 +286,8 @@ fn shut_eye(world: &World, map: &GlareMap, position: DVec3) -> Option<MappedEye>
         "the position lies outside of the room"
     } else if inside_furniture(&world.scene, position, DVec3::Z, false) {
         "the position lies inside furniture"
+    } else if in_a_surface(&world.scene, position) {
+        "the position lies in a surface"
     } else {
         return None;
     };

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::map::from_luminaires;
-use super::{Observed, Sheets, of_viewpoint};
+use super::{Light, Observed, Sheets, of_viewpoint};
 use crate::emitters::Sighted;
 use crate::estimate::Estimate;
 use crate::field::store::StoredField;
@@ -21,6 +21,9 @@ const EFFORT: GlanceEffort = GlanceEffort { replicates: 4, rays: 1024, rough: 0.
 /// Why a kept field has no luminances of task and surround: it is looked up for the plane of the eye.
 const NO_ZONES: &str =
     "luminances of task and surround are not computed from a kept field: leave `--field` out, or run `check`";
+
+/// The same of the field of view.
+const NO_FIELD: &str = "the mean luminance of the field of view is not computed from a kept field: leave `--field` out, or run `check`";
 
 /// All viewpoints of a project in all directions under their own light scene, from one stored field for each
 /// world.
@@ -47,8 +50,10 @@ fn of_world(project: &Project, world: &World, field: StoredField, sheets: Sheets
             }
         };
         let zones = |_: usize, _: usize, _: &[f64]| Err(NO_ZONES);
+        let field = |_: usize, _: usize, _: &[f64]| Err(NO_FIELD);
+        let light = Light { at_eye: light, zones, field };
         let conventions = [Convention::default()];
-        let mut found = of_viewpoint(project, world, index, &prepared, &conventions, sheets, light, zones);
+        let mut found = of_viewpoint(project, world, index, &prepared, &conventions, sheets, &light);
         for view in &mut found {
             view.approximations.clone_from(&said);
             let estimates = view.indices.iter_mut().map(|index| &mut index.estimate);

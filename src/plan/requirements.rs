@@ -7,7 +7,7 @@ use super::{Plan, PlanError, PlannedArea, PlannedRequirement, PlannedRoom, Subje
 use crate::norm::{self, Limit, Row, Standard, Unknown, Verified, Zone};
 use crate::outcome::{Bound, Modified};
 use crate::project::{AreaKind, CustomSubject, Norm, Project, Room, World};
-use crate::quantity::{Quantity, Statistic};
+use crate::quantity::{Quantity, Statistic, Unmeasured};
 
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     if let Some(norm) = &project.norm {
@@ -96,6 +96,10 @@ pub(super) fn of_room(quantity: Quantity, shr: f64) -> Option<Subject> {
         Quantity::DiscomfortIndex => Some(Subject::DiscomfortTable(shr)),
         Quantity::ColourRendering => Some(Subject::ColourRendering),
         Quantity::Declared(property) => Some(Subject::Declared(property)),
+        Quantity::NotComputed(Unmeasured::GlareRating) => Some(Subject::Missing(
+            "the norm rates GR at observers of its own, which gershun does not lay: list viewpoints and require GR of them"
+                .into(),
+        )),
         Quantity::NotComputed(_) => Some(Subject::Missing("gershun does not compute this quantity".into())),
         Quantity::Intensity => {
             Some(Subject::Missing("gershun does not compute this quantity of a room".into()))

@@ -1,5 +1,5 @@
-//! What an observer looks at → receivers: the task's cone, its surround and the far field, each a zone of the field
-//! of view. The zones are those of images ([`crate::glare::field`]), so that both tell the same.
+//! What an observer looks at → receivers: the field of view, the task's cone, its surround and the far field, each a
+//! zone before the eye. The task's zones are those of images ([`crate::glare::field`]), so that both tell the same.
 
 use glam::DVec3;
 
@@ -7,6 +7,23 @@ use crate::glare::index::parse;
 use crate::glare::luminances::FIELD_HALF_ANGLES_DEG;
 use crate::project::Task;
 use crate::query::{Kernel, Receiver, Zone};
+
+/// Half-angle of a cone of 5 sr, degrees: 2π (1 − cos α) = 5. IES takes F = Σ Lω/5 sr as the mean luminance of the
+/// field of view and says nothing of its shape; a cone about the line of sight is a convention of this program.
+pub const FIELD_HALF_ANGLE_DEG: f64 = 78.215848291344;
+
+/// Indices that ask for the mean luminance of the field of view.
+const OF_FIELD: [&str; 3] = ["DGR", "VCP", "L_mean"];
+
+/// Why something is not known beside a view: no index that is computed asks for it.
+pub const NOT_ASKED: &str = "it was not asked for";
+
+/// The receiver of the mean luminance of the field of view, times π, where some of the indices ask for it.
+pub fn field_of_view(indices: &[&'static str], eye: DVec3, gaze: DVec3) -> Option<Receiver> {
+    let zone = Zone::new(gaze, gaze, [0.0, FIELD_HALF_ANGLE_DEG])?;
+    let wanted = indices.iter().any(|key| OF_FIELD.contains(key));
+    wanted.then(|| Receiver { point: eye, lift: DVec3::ZERO, kernels: vec![Kernel::Zone(zone)] })
+}
 
 /// Why there are no luminances of a task.
 pub const BEHIND: &str = "the task lies behind the eye";
@@ -69,5 +86,20 @@ impl TaskZones {
             said.push("what of the zones lies behind the plane of the eye is left out".into());
         }
         said
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches: the full angle for the half-angle, a field of another size, a receiver where nothing asks for it.
+    #[test]
+    fn the_field_of_view_is_5_sr() {
+        let field = field_of_view(&["UGR", "VCP"], DVec3::ZERO, DVec3::X).expect("VCP asks for it");
+        let [Kernel::Zone(zone)] = field.kernels[..] else { panic!("a zone") };
+        assert!((zone.size_sr() - 5.0).abs() < 1e-10, "{}", zone.size_sr());
+        assert!(!zone.is_cut());
+        assert!(field_of_view(&["UGR", "DGP"], DVec3::ZERO, DVec3::X).is_none());
     }
 }

@@ -312,6 +312,10 @@ pub struct Viewpoint {
     pub highlights: bool,
     /// What is looked at, for the luminances of task and surround.
     pub task: Task,
+    /// The illuminated area that GR is rated against, an index within the world; `None`: the only one of its room.
+    pub area: Option<usize>,
+    /// Diffuse reflectance of that area; `None`: of what lies under it.
+    pub area_reflectance: Option<f64>,
     /// Where the user wrote its eye; `None` where no file has it.
     pub written: Option<Place>,
 }

@@ -261,6 +261,8 @@ pub struct ViewpointSection {
     pub highlights: Option<At<bool>>,
     pub task: Option<At<[f64; 3]>>,
     pub task_deg: Option<At<f64>>,
+    pub area: Option<At<String>>,
+    pub area_reflectance: Option<At<f64>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,4 +1,4 @@
-//! Whether a place lies inside closed furniture, where nobody can be and nothing is lit.
+//! Whether a place lies inside closed furniture, where nobody can be and nothing is lit, or in a surface.
 
 use glam::DVec3;
 
@@ -36,6 +36,18 @@ pub fn inside_furniture(scene: &Scene, place: DVec3, normal: DVec3, on_surface: 
         around = Some(odd);
     }
     true
+}
+
+/// Whether a point lies in a surface, or nearer to one than 0.01 mm: rays from it then start on either side by
+/// rounding.
+pub fn in_a_surface(scene: &Scene, place: DVec3) -> bool {
+    const REACH_M: f64 = 1e-5;
+    // No plane runs along all three; slightly off the axes, so that none runs along edges.
+    [DVec3::X, DVec3::Y, DVec3::Z].into_iter().any(|axis| {
+        let direction = (axis + DVec3::new(1.3e-3, 2.7e-3, 3.9e-3)).normalize();
+        let origin = place - REACH_M * direction;
+        scene.tracer.closest(origin, direction, &[]).is_some_and(|hit| hit.distance_m < 2.0 * REACH_M)
+    })
 }
 
 /// Closed surfaces crossed an odd number of times, of those in `among`.

@@ -16,7 +16,7 @@ fn source(case: &Value) -> GlareSource {
         luminance: Nits(number(&case["L_s"])),
         solid_angle_sr: number(&case["omega_sr"]),
         position_index: number(&case["P"]),
-        off_table: false,
+        ugr_share: 1.0,
         off_axis_deg: number(&case["theta_deg"]),
         eye_lx: number(&case["E_glare_lx"]),
         extent: None,
@@ -28,7 +28,7 @@ fn at_eye(pairs: &Value) -> Vec<GlareSource> {
         luminance: Nits(0.0),
         solid_angle_sr: 0.0,
         position_index: 1.0,
-        off_table: false,
+        ugr_share: 1.0,
         off_axis_deg: number(&pair[1]),
         eye_lx: number(&pair[0]),
         extent: None,
@@ -105,13 +105,13 @@ fn outdoor_and_small_source_forms_agree_with_their_closed_forms() {
     for case in cases("TI") {
         let mut sight = Sight { sources: at_eye(&case["E_theta"]), ..Sight::default() };
         sight.given.road = Some(Nits(number(&case["L_av"])));
-        sight.given.age_years = number(&case["age"]);
+        sight.given.age_years = Some(number(&case["age"]));
         close(value("f_TI", &sight), &case["fTI_percent"], &case);
     }
     for case in cases("CIE146_general") {
         let pair = serde_json::json!([[case["E_gl"], case["theta"]]]);
         let mut sight = Sight { sources: at_eye(&pair), ..Sight::default() };
-        sight.given.age_years = number(&case["age"]);
+        sight.given.age_years = Some(number(&case["age"]));
         sight.given.pigment = number(&case["pigment"]);
         close(value("L_veil", &sight), &case["L_veil"], &case);
     }
@@ -126,7 +126,7 @@ fn outdoor_and_small_source_forms_agree_with_their_closed_forms() {
                 luminance: Nits(number(&triple[0])),
                 solid_angle_sr: number(&triple[1]),
                 position_index: number(&triple[2]),
-                off_table: false,
+                ugr_share: 1.0,
                 off_axis_deg: 30.0,
                 eye_lx: 1.0,
                 extent: None,
@@ -147,7 +147,7 @@ fn outdoor_and_small_source_forms_agree_with_their_closed_forms() {
         };
         let point = GlareSource {
             position_index: number(&case["P"]),
-            off_table: false,
+            ugr_share: 1.0,
             eye_lx: 1.0,
             extent: Some(extent),
             ..at_eye(&serde_json::json!([[1, 20]]))[0]
@@ -170,7 +170,7 @@ fn window() -> Sight {
             luminance: Nits(3000.0),
             solid_angle_sr: 0.2,
             position_index: 1.5,
-            off_table: false,
+            ugr_share: 1.0,
             off_axis_deg: 25.0,
             eye_lx,
             extent: None,

@@ -1,13 +1,15 @@
-//! Eyes where nobody can be: inside closed furniture, or behind the room's own walls. Maps leave such places out; a
-//! listed viewpoint was meant to see something, so it is a mistake.
+//! Eyes where nobody can be: inside closed furniture, behind the room's own walls, or in a surface, which then hides
+//! by chance what they see. Maps leave such places out; a listed viewpoint was meant to see something, so it is a
+//! mistake.
 
 use glam::DVec3;
 
 use crate::project::context::Context;
 use crate::project::{Room, Viewpoint};
-use crate::scene::{Scene, inside_furniture};
+use crate::scene::{Scene, in_a_surface, inside_furniture};
 
-/// Reports every viewpoint whose eye lies inside furniture, or farther out than its room's walls, floor and ceiling.
+/// Reports every viewpoint whose eye lies inside furniture or in a surface, or farther out than its room's
+/// walls, floor and ceiling.
 pub fn check(scene: &Scene, rooms: &[Room], viewpoints: &[Viewpoint], context: &mut Context) {
     for viewpoint in viewpoints {
         let Some(place) = &viewpoint.written else { continue };
@@ -18,6 +20,8 @@ pub fn check(scene: &Scene, rooms: &[Room], viewpoints: &[Viewpoint], context: &
                 "in a wall, the floor or the ceiling",
                 "it lies a little outside of the room: move the eye into it",
             )
+        } else if in_a_surface(scene, viewpoint.eye) {
+            ("in a surface", "what it sees would hang on rounding: move the eye off it")
         } else {
             continue;
         };

@@ -19,6 +19,7 @@ mod required;
 mod rooms;
 mod settings;
 mod shell;
+mod viewpoint_list;
 mod viewpoints;
 mod walled;
 mod zones;

@@ -1,19 +1,21 @@
-//! `[[viewpoint]]` and the list of viewpoints → observers. A sweep turns the line of sight about
+//! `[[viewpoint]]` → observers. A sweep turns the line of sight about
 //! the vertical; without a direction the line of sight is +x, so its angles are azimuths.
 
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
+use toml::Spanned;
 
 use super::areas::light_scene_index;
 use super::draft::{Draft, Located, locate};
-use super::lists::Table;
+use super::viewpoint_list;
 use crate::glare::index::{self, INDICES, parse};
 use crate::glare::luminances::FIELD_HALF_ANGLES_DEG;
 use crate::project::context::Context;
+use crate::project::diagnostics::suggestion;
 use crate::project::schema::{At, File, SweepSection, ViewpointSection};
 use crate::project::{LightScene, Task, Viewpoint};
-use crate::sphere::{azimuth_tilt_deg, from_azimuth_tilt, rounded_deg};
+use crate::sphere::{azimuth_tilt_deg, rounded_deg};
 
 /// Directions one sweep may have.
 const MAX_DIRECTIONS: f64 = 3600.0;
@@ -33,10 +35,24 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             continue;
         };
         let (directions, azimuths_deg): (Vec<DVec3>, Vec<f64>) = lines.into_iter().unzip();
-        let Some(task) = task(section, eye, &directions, context) else { continue };
+        let Some(task) = task_of(section, eye, &directions, context) else { continue };
         if section.task.is_some() || section.task_deg.is_some() {
-            let further = index::of_task().map(|index| index.key).filter(|key| !indices.contains(key));
-            indices.extend(further.collect::<Vec<_>>());
+            with_task(&mut indices);
+        }
+        let area = match &section.area {
+            None => None,
+            Some(name) => {
+                let Some((_, area)) = area_named(drafts, name.get_ref()) else {
+                    let known = drafts.iter().flat_map(|draft| &draft.areas);
+                    let hint = suggestion(name.get_ref(), known.map(|area| area.name.as_str()));
+                    context.error(&name.span(), format!("no area \"{}\"", name.get_ref()), &hint);
+                    continue;
+                };
+                Some(area)
+            }
+        };
+        if let Some(reflectance) = &section.area_reflectance {
+            context.in_range(reflectance, 0.0, 1.0, "area_reflectance");
         }
         let name_span = section.name.span();
         let viewpoint = Viewpoint {
@@ -49,6 +65,8 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             light_scene,
             highlights: section.highlights.as_ref().is_none_or(|wanted| *wanted.get_ref()),
             task,
+            area,
+            area_reflectance: section.area_reflectance.as_ref().map(|rho| *rho.get_ref()),
             written: Some(context.place(&section.eye.span())),
         };
         let mut report = |context: &mut Context, message: String| {
@@ -56,48 +74,11 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         };
         insert(viewpoint, drafts, context, &mut report);
     }
-    let list = file.lists.as_ref().and_then(|lists| lists.get_ref().viewpoints.as_ref());
-    let columns = &["name", "x", "y", "z", "azimuth", "tilt"];
-    if let Some(table) = list.and_then(|path| Table::read(path, columns, 5, context)) {
-        for row in &table.rows {
-            let Some(name) = row.cells[0].clone() else {
-                table.error(row, "name is missing".to_owned(), "", context);
-                continue;
-            };
-            let numbers = (
-                table.needed3(row, 1, context),
-                table.needed(row, 4, context),
-                table.number(row, 5, context),
-            );
-            let (Ok(eye), Ok(azimuth_deg), Ok(tilt_deg)) = numbers else {
-                continue;
-            };
-            let tilt_deg = tilt_deg.unwrap_or(0.0);
-            if !(-90.0..=90.0).contains(&tilt_deg) {
-                table.error(row, format!("tilt must lie in −90 … 90, found {tilt_deg}"), "", context);
-                continue;
-            }
-            let viewpoint = Viewpoint {
-                name,
-                room: 0,
-                eye: DVec3::from_array(eye),
-                directions: vec![from_azimuth_tilt(azimuth_deg, tilt_deg)],
-                azimuths_deg: vec![azimuth_deg],
-                indices: Vec::new(),
-                light_scene: None,
-                highlights: true,
-                task: Task::default(),
-                written: Some(table.place(row)),
-            };
-            let mut report = |context: &mut Context, message: String| {
-                table.error(row, message, "", context);
-            };
-            insert(viewpoint, drafts, context, &mut report);
-        }
-    }
+    viewpoint_list::add(file, drafts, light_scenes, context);
 }
 
-fn insert(
+/// Adds an observer to the room that it lies in.
+pub(super) fn insert(
     mut viewpoint: Viewpoint,
     drafts: &mut [Draft],
     context: &mut Context,
@@ -115,6 +96,11 @@ fn insert(
     }
     match locate(drafts, viewpoint.eye) {
         Located::In(world, room) => {
+            let elsewhere = |area: usize| drafts[world].areas.get(area).is_none_or(|area| area.room != room);
+            if viewpoint.area.is_some_and(elsewhere) {
+                report(context, format!("the area of viewpoint \"{name}\" lies in another room"));
+                return;
+            }
             viewpoint.room = room;
             drafts[world].viewpoints.push(viewpoint);
         }
@@ -141,38 +127,77 @@ pub fn indices(names: &[At<String>], context: &mut Context) -> Vec<&'static str>
     keys
 }
 
-/// What is looked at. A task that no line of sight has before it is a mistake.
-fn task(section: &ViewpointSection, eye: DVec3, directions: &[DVec3], context: &mut Context) -> Option<Task> {
-    let mut task = Task::default();
-    if let Some(opening) = &section.task_deg {
-        task.opening_deg = *opening.get_ref();
-        let most_deg = 2.0 * FIELD_HALF_ANGLES_DEG[0];
-        if !(task.opening_deg > 0.0 && task.opening_deg < most_deg) {
-            let message = format!("task_deg must lie between 0 and {most_deg}, found {}", task.opening_deg);
-            let hint = format!(
-                "the full opening angle of the task's cone; its surround ends at a cone of {most_deg}°"
-            );
-            context.error(&opening.span(), message, &hint);
-            return None;
+/// Which of a task's numbers is wrong.
+pub(super) enum Wrong {
+    Place,
+    Opening,
+}
+
+/// What is looked at. A task that no line of sight has before it is a mistake: which number, what is wrong, a hint.
+pub(super) fn task(
+    at: Option<DVec3>,
+    opening_deg: Option<f64>,
+    eye: DVec3,
+    directions: &[DVec3],
+) -> Result<Task, (Wrong, String, String)> {
+    let most_deg = 2.0 * FIELD_HALF_ANGLES_DEG[0];
+    let opening_deg = opening_deg.unwrap_or(Task::default().opening_deg);
+    if !(opening_deg > 0.0 && opening_deg < most_deg) {
+        let message = format!("task_deg must lie between 0 and {most_deg}, found {opening_deg}");
+        let hint =
+            format!("the full opening angle of the task's cone; its surround ends at a cone of {most_deg}°");
+        return Err((Wrong::Opening, message, hint));
+    }
+    let Some(place) = at else { return Ok(Task { at, opening_deg }) };
+    if !((place - eye).length() > 1e-9) {
+        let hint = "task = [x, y, z], the point looked at".to_owned();
+        return Err((Wrong::Place, "the task lies in the eye".into(), hint));
+    }
+    if !directions.iter().any(|gaze| gaze.dot(place - eye) > 0.0) {
+        let hint = "it must lie within 90° of the line of sight: turn that, or move the task".to_owned();
+        return Err((Wrong::Place, "the task lies behind the eye".into(), hint));
+    }
+    Ok(Task { at, opening_deg })
+}
+
+/// The task of a section; its mistakes are reported.
+fn task_of(
+    section: &ViewpointSection,
+    eye: DVec3,
+    directions: &[DVec3],
+    context: &mut Context,
+) -> Option<Task> {
+    let place = section.task.as_ref();
+    if place.is_some_and(|place| !context.finite(place.get_ref(), &place.span())) {
+        return None;
+    }
+    let at = place.map(|place| DVec3::from_array(*place.get_ref()));
+    let opening_deg = section.task_deg.as_ref().map(|opening| *opening.get_ref());
+    match task(at, opening_deg, eye, directions) {
+        Ok(task) => Some(task),
+        Err((wrong, message, hint)) => {
+            let span = match wrong {
+                Wrong::Place => section.task.as_ref().map(Spanned::span),
+                Wrong::Opening => section.task_deg.as_ref().map(Spanned::span),
+            };
+            context.error(&span.unwrap_or(section.name.span()), message, &hint);
+            None
         }
     }
-    if let Some(place) = &section.task {
-        if !context.finite(place.get_ref(), &place.span()) {
-            return None;
-        }
-        let at = DVec3::from_array(*place.get_ref());
-        if !((at - eye).length() > 1e-9) {
-            context.error(&place.span(), "the task lies in the eye", "task = [x, y, z], the point looked at");
-            return None;
-        }
-        task.at = Some(at);
-        if !directions.iter().any(|gaze| gaze.dot(at - eye) > 0.0) {
-            let hint = "it must lie within 90° of the line of sight: turn that, or move the task";
-            context.error(&place.span(), "the task lies behind the eye", hint);
-            return None;
-        }
-    }
-    Some(task)
+}
+
+/// The indices of a task join those asked for.
+pub(super) fn with_task(indices: &mut Vec<&'static str>) {
+    let further = index::of_task().map(|index| index.key).filter(|key| !indices.contains(key));
+    indices.extend(further.collect::<Vec<_>>());
+}
+
+/// World and index of an area by its name.
+pub(super) fn area_named(drafts: &[Draft], name: &str) -> Option<(usize, usize)> {
+    drafts
+        .iter()
+        .enumerate()
+        .find_map(|(world, draft)| Some((world, draft.areas.iter().position(|area| area.name == name)?)))
 }
 
 /// Lines of sight with their azimuths in degrees: those of a sweep as it is written where nothing else sets its

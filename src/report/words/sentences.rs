@@ -310,7 +310,65 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("the illuminance at the eye is not positive", "освещённость у глаза не положительна"),
     ("there is no indirect light at the eye", "отражённого света у глаза нет"),
     ("the mean luminance of the field of view is not known", "средняя яркость поля зрения неизвестна"),
+    ("the field of view is dark", "поле зрения тёмное"),
+    ("it was not asked for", "не запрашивалось"),
+    (
+        "the mean luminance of the field of view is not computed from a kept field: leave `--field` out, or run `check`",
+        "средняя яркость поля зрения по сохранённому полю яркости не рассчитывается: уберите `--field` или запустите `check`",
+    ),
+    (
+        "luminances of task and surround are not computed from a kept field: leave `--field` out, or run `check`",
+        "яркости рабочего поля и окружения по сохранённому полю яркости не рассчитываются: уберите `--field` или запустите `check`",
+    ),
+    ("the eyes of a map have no task", "у глаз карты нет рабочего поля"),
+    (
+        "maps do not compute it: list a viewpoint, and run `check`",
+        "для карт не рассчитывается: задайте точку наблюдения и запустите `check`",
+    ),
+    (
+        "field of view: a cone of 5 sr, {}° about the line of sight, luminaires included",
+        "поле зрения – конус 5 ср, {}° от линии зрения, вместе со светильниками",
+    ),
     ("the share of the ceiling that shines is not given", "доля светящейся части потолка не задана"),
+    ("nothing of the ceiling shines", "потолок не светится ни в одной части"),
+    (
+        "more shines than all of the ceiling: openings lie one above the other",
+        "светящаяся площадь больше потолка: отверстия лежат друг над другом",
+    ),
+    ("{} of the ceiling shines", "доля светящейся части потолка {}"),
+    (
+        "GGR is made for luminous shares of the ceiling from {} to {}, here {}; below them UGR holds",
+        "GGR создан для доли светящейся части потолка от {} до {}, здесь {}; при меньшей действует UGR",
+    ),
+    (
+        "GR is rated against the illuminance of an area, which `gershun check` computes",
+        "GR оценивается относительно освещённости области, которую рассчитывает `gershun check`",
+    ),
+    ("the area has no horizontal illuminance", "для области нет горизонтальной освещённости"),
+    (
+        "no area of the room has a horizontal illuminance, against which GR rates glare",
+        "ни у одной области помещения нет горизонтальной освещённости, относительно которой оценивается GR",
+    ),
+    (
+        "the room has several areas: name that of the viewpoint (`area`)",
+        "в помещении несколько областей: назовите область точки наблюдения (`area`)",
+    ),
+    (
+        "nothing lies under the area whose reflectance could be taken (`area_reflectance`)",
+        "под областью нет поверхности, коэффициент отражения которой можно взять (`area_reflectance`)",
+    ),
+    (
+        "area \"{}\" of {} lx at initial flux, reflectance {}",
+        "область «{}»: {} лк при начальном потоке, коэффициент отражения {}",
+    ),
+    (
+        "CIE 112 has GR for lines of sight below the horizontal",
+        "CIE 112 определяет GR для линий зрения ниже горизонта",
+    ),
+    (
+        "the norm rates GR at observers of its own, which gershun does not lay: list viewpoints and require GR of them",
+        "норма оценивает GR в собственных точках наблюдения, которые gershun не расставляет: задайте точки наблюдения и потребуйте GR для них",
+    ),
     (
         "the ground's reflectance and mean horizontal illuminance are not given",
         "коэффициент отражения и средняя горизонтальная освещённость земли не заданы",

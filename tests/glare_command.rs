@@ -294,11 +294,23 @@ fn what_no_image_shows_can_be_given() {
     let ggr = value("UGR") + 0.73 * 8.0 * (2.55 * (1.0 + e_d / 220.0) / (1.0 + e_d / e_i)).log10();
     assert!((value("GGR") - ggr).abs() < 1e-9, "{} is not {ggr}", value("GGR"));
     let environment = 0.035 * 0.25 * 200.0 / std::f64::consts::PI;
-    let gr = 27.0 + 24.0 * (10.0 * lx / theta_deg.powi(2) / environment.powf(0.9)).log10();
+    // A disc of 15° veils by its parts: more than from its centre.
+    let veil = value("L_veil_SH");
+    assert!(veil > 1.2 * 10.0 * lx / theta_deg.powi(2), "{veil}");
+    let gr = 27.0 + 24.0 * (veil / environment.powf(0.9)).log10();
     assert!((value("GR") - gr).abs() < 1e-9, "{} is not {gr}", value("GR"));
-    let veil = 9.86 * lx / theta_deg.powi(2) * (1.0 + (40.0f64 / 66.4).powi(4));
-    let f_ti = 65.0 * veil / 2f64.powf(0.8);
+    let aged = 0.986 * (1.0 + (40.0f64 / 66.4).powi(4));
+    let f_ti = 65.0 * aged * veil / 2f64.powf(0.8);
     assert!((value("f_TI") - f_ti).abs() < 1e-9, "{} is not {f_ti}", value("f_TI"));
+    // EN 13201-3 has an eye of 23 years, whatever age other forms take: 9.86 [1 + (23/66.4)⁴] = 10.002.
+    let young = told(&["--road", "2"]);
+    let of_young = young["indices"]["f_TI"]["value"].as_f64().expect("f_TI");
+    let f_ti = 65.0 * 1.000_194 * veil / 2f64.powf(0.8);
+    assert!((of_young / f_ti - 1.0).abs() < 1e-5, "{of_young} is not {f_ti}");
+    // Below a share of 0.15 there is UGR, and no GGR however well it is given.
+    let little = told(&["--ceiling-coverage", "0.1"]);
+    let reason = little["indices"]["GGR"]["reason"].as_str().expect("a reason");
+    assert!(reason.contains("from 0.15 to 1, here 0.100"), "{reason}");
     for (option, text) in [
         ("--ceiling-coverage", "1.2"),
         ("--ceiling-coverage", "0"),

@@ -153,6 +153,14 @@ fn reports_name_the_index() {
     }
     assert_eq!(json["requirements"][1]["unit"], "cd/m²");
     assert!(text("viewpoints.csv").contains("DGP"), "each direction stands in the observers' table");
+    // A table of luminances, ratios and percentages must say which is which.
+    let table = text("viewpoints.csv");
+    let unit = |key: &str| {
+        let mut rows = table.lines().filter(|row| row.contains(key));
+        rows.next().and_then(|row| row.rsplit(',').next()).map(str::to_owned)
+    };
+    assert!(table.lines().next().is_some_and(|header| header.ends_with(",unit")));
+    assert_eq!((unit(",L_b,").as_deref(), unit(",DGP,").as_deref()), (Some("cd/m²"), Some("1")));
     let page = text("report.html");
     assert!(page.contains("daylight glare probability DGP"));
     assert!(page.contains("вероятность дискомфорта от дневного света DGP"));
@@ -172,7 +180,12 @@ fn an_unknown_index_is_refused_with_its_line_and_the_known_ones() {
         assert_eq!(errors[0].line, line, "{}", errors[0]);
         assert!(errors[0].hint.contains(hint), "{}", errors[0]);
     }
-    let of_room = "[[room]]\nname = \"R\"\n[[require]]\nroom = \"R\"\nquantity = \"DGI\"\nmax = 22\n";
-    let errors = load(folder(&format!("{ROOM}{of_room}"), &[]).path(), &LoadOptions::default()).unwrap_err();
-    assert!(errors[0].hint.contains("name a viewpoint"), "{}", errors[0]);
+    // GR and DGP are names of norms' quantities too, which a room of one's own cannot be held to either.
+    for key in ["DGI", "GR", "DGP"] {
+        let of_room =
+            format!("[[room]]\nname = \"R\"\n[[require]]\nroom = \"R\"\nquantity = \"{key}\"\nmax = 22\n");
+        let text = format!("{ROOM}{of_room}");
+        let errors = load(folder(&text, &[]).path(), &LoadOptions::default()).unwrap_err();
+        assert!(errors[0].hint.contains("name a viewpoint"), "{}", errors[0]);
+    }
 }

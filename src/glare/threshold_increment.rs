@@ -5,6 +5,9 @@ use super::source::{Sight, positive};
 use super::veiling::over_sources;
 use crate::units::Undefined;
 
+/// Why there is no f_TI where nobody says how bright the road is.
+pub const NO_ROAD: &str = "the road's mean luminance L_av is not given";
+
 /// Angles from the line of sight within which a luminaire counts, degrees.
 pub const ANGLES_DEG: [f64; 2] = [0.1, 60.0];
 /// Age for which EN 13201-3 has f_TI, years: 9.86 [1 + (23/66.4)⁴] = 10.0.
@@ -39,8 +42,7 @@ pub fn veiling_en_13201(sight: &Sight) -> Result<f64, Undefined> {
 /// # Errors
 /// The road's luminance is not given or not above 0.05 cd/m², or as [`veiling_en_13201`].
 pub fn threshold_increment(sight: &Sight) -> Result<f64, Undefined> {
-    let road =
-        sight.given.road.ok_or_else(|| Undefined::because("the road's mean luminance L_av is not given"))?;
+    let road = sight.given.road.ok_or_else(|| Undefined::because(NO_ROAD))?;
     let road = positive(road.0, "the road is dark")?;
     if !(road > DARKEST_ROAD) {
         return Err(Undefined::because("f_TI is defined above a road luminance of 0.05 cd/m² only"));

@@ -9,12 +9,15 @@ use super::{Answers, Gauged};
 use crate::estimate::Estimate;
 use crate::geometry::polygon;
 use crate::glare::source::{Given, Ground, Sight};
-use crate::glare::{ggr, gr, vcp};
+use crate::glare::{ggr, gr, threshold_increment, vcp};
 use crate::norm::Light;
 use crate::plan::FIELD_HALF_ANGLE_DEG;
 use crate::project::{Room, World};
 use crate::scene::Channel;
 use crate::units::{Nits, Undefined};
+
+/// Why no viewpoint has f_TI.
+const NO_ROAD_HERE: &str = "a room has no road: f_TI is computed of images, with the road's luminance given";
 
 /// How far below the room's height a surface may shine and still belong to the ceiling, m.
 const CEILING_M: f64 = 0.25;
@@ -109,6 +112,7 @@ impl<'a> Beside<'a> {
             vcp::NO_MEAN => self.field.err(),
             gr::NO_GROUND => self.ground.err(),
             ggr::NO_COVERAGE => self.ceiling.err(),
+            threshold_increment::NO_ROAD => Some(NO_ROAD_HERE),
             _ => None,
         };
         why.map_or(undefined, Undefined::because)

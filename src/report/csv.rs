@@ -178,7 +178,7 @@ fn area_points(table: &mut Table, room: &RoomOutcome, area: &AreaOutcome) -> Res
 }
 
 fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportError> {
-    let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,room,undefined";
+    let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,room,undefined,unit";
     let mut table = Table::new(dialect, &header.split(',').collect::<Vec<_>>())?;
     for room in &outcome.rooms {
         for kind in &room.ugr_table {
@@ -187,7 +187,7 @@ fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportErro
                     Ok(ugr) => (Cell::Number(*ugr), ""),
                     Err(undefined) => (Cell::Empty, undefined.reason.as_str()),
                 };
-                let mut cells = [const { Cell::Empty }; 14];
+                let mut cells = [const { Cell::Empty }; 15];
                 let (name, method) =
                     (format!("{}, {sight}", kind.kind), format!("table method CIE 190, SHR {}", kind.shr));
                 cells[0] = Cell::Text(&name);
@@ -196,6 +196,7 @@ fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportErro
                 cells[6] = value;
                 cells[12] = Cell::Text(&room.name);
                 cells[13] = Cell::Text(undefined);
+                cells[14] = Cell::Text("1");
                 table.row(&cells)?;
             }
         }
@@ -219,6 +220,7 @@ fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportErro
                 Cell::Number(view.e_v_lx),
                 Cell::Text(&room.name),
                 Cell::Text(undefined),
+                Cell::Text("1"),
             ])?;
             for index in &view.indices {
                 let ([value, se, lo, hi], undefined) = match &index.estimate {
@@ -240,6 +242,7 @@ fn viewpoints(outcome: &Outcome, dialect: Dialect) -> Result<Written, ReportErro
                     Cell::Number(view.e_v_lx),
                     Cell::Text(&room.name),
                     Cell::Text(undefined),
+                    Cell::Text(&index.unit),
                 ])?;
             }
         }

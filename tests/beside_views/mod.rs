@@ -288,8 +288,12 @@ fn an_eye_in_a_surface_is_a_mistake() {
 /// Catches: a reason or a note that stays English in a Russian report.
 #[test]
 fn what_is_said_beside_a_view_is_said_in_russian() {
-    let outcome =
-        run(&court("").replace("\"GR\"", "\"GR\", \"VCP\", \"GGR\", \"L_mean\""), &[], 32, Effort::default());
+    let outcome = run(
+        &court("").replace("\"GR\"", "\"GR\", \"VCP\", \"GGR\", \"L_mean\", \"f_TI\""),
+        &[],
+        32,
+        Effort::default(),
+    );
     let view = &outcome.rooms[0].viewpoints[0];
     let mut said: Vec<String> = view.indices.iter().flat_map(|index| index.notes.clone()).collect();
     said.extend(view.indices.iter().filter_map(|index| Some(index.estimate.as_ref().err()?.reason.clone())));

@@ -104,7 +104,9 @@ fn suits(subject: CustomSubject, quantity: Quantity, name: &At<String>, context:
     let of_view = index::parse(name.get_ref()).is_some();
     let of_views = || format!("a viewpoint has {}", indices_of_views().collect::<Vec<_>>().join(", "));
     let (what, hint) = match subject {
-        CustomSubject::Room(_) if matches!(quantity, Quantity::OfView { .. }) => {
+        CustomSubject::Room(_)
+            if of_view && matches!(quantity, Quantity::OfView { .. } | Quantity::NotComputed(_)) =>
+        {
             ("a room", "it is one of a view: name a viewpoint, viewpoint = \"…\"".to_owned())
         }
         CustomSubject::Room(_) if !single => {

@@ -134,7 +134,7 @@ pub fn observed_json(observed: &[Observed], maps: &[Mapped]) -> Result<String, R
 /// Where a value cannot be encoded.
 pub fn observed_csv(observed: &[Observed], maps: &[Mapped]) -> Result<String, ReportError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,worst,undefined,notes,map,x_m,y_m,z_m";
+    let header = "viewpoint,light_scene,azimuth_deg,tilt_deg,index,convention,value,se,lo,hi,L_b_cd_m2,E_v_lx,worst,undefined,notes,map,x_m,y_m,z_m,unit";
     writer.write_record(header.split(','))?;
     let cell = |number: Option<f64>| {
         number.filter(|number| number.is_finite()).map_or(String::new(), |number| number.to_string())
@@ -162,6 +162,7 @@ pub fn observed_csv(observed: &[Observed], maps: &[Mapped]) -> Result<String, Re
                 view.eye_m[0].to_string(),
                 view.eye_m[1].to_string(),
                 view.eye_m[2].to_string(),
+                value.unit.to_owned(),
             ])?;
         }
     }

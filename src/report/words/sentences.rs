@@ -310,6 +310,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("the illuminance at the eye is not positive", "освещённость у глаза не положительна"),
     ("there is no indirect light at the eye", "отражённого света у глаза нет"),
     ("the mean luminance of the field of view is not known", "средняя яркость поля зрения неизвестна"),
+    (
+        "a room has no road: f_TI is computed of images, with the road's luminance given",
+        "в помещении нет дороги: f_TI рассчитывается по изображениям с заданной яркостью дорожного покрытия",
+    ),
     ("the field of view is dark", "поле зрения тёмное"),
     ("it was not asked for", "не запрашивалось"),
     (

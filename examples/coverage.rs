@@ -17,6 +17,7 @@ use common::cpu_seconds;
 use gershun::emitters::sighted_from;
 use gershun::estimate::{Estimate, Pair};
 use gershun::grid::{GridRule, rectangle};
+use gershun::measure::beside::Beside;
 use gershun::measure::glare_sources::Convention;
 use gershun::measure::{Answers, view, weights};
 use gershun::project::{LoadOptions, load};
@@ -114,8 +115,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         run.push((pair.ratio().value, lo, hi));
         let sighted = sighted_from(prepared.emitters(), eye, seed, true);
         let eye_light = view::EyeLight::of_row(&answers, 3, &light);
-        let asked =
-            view::Asked { gaze, indices: &[], convention: Convention::default(), zones: Err("no task") };
+        let asked = view::Asked {
+            gaze,
+            indices: &[],
+            convention: Convention::default(),
+            beside: Beside::nothing("not asked for"),
+        };
         let glare = view::glare(&eye_light, prepared.emitters(), &sighted, &asked, &light, ALPHA).ugr;
         run.push((glare.value.unwrap_or(f64::NAN), glare.lo, glare.hi));
         for row in [4, demand.rows() - 1] {

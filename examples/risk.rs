@@ -132,6 +132,8 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         light_scene: None,
         highlights: true,
         task: Task::default(),
+        area: None,
+        area_reflectance: None,
         written: None,
     }];
     Ok(project)

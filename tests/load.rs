@@ -825,6 +825,8 @@ fn an_eye_inside_furniture_or_a_wall_is_refused_with_its_line() {
         ("[1.5, 1.2, 1.2]", "the eye of viewpoint \"Seat\" lies inside furniture"),
         ("[4.004, 1.2, 1.2]", "the eye of viewpoint \"Seat\" lies in a wall"),
         ("[3, 1.2, -0.003]", "the eye of viewpoint \"Seat\" lies in a wall, the floor"),
+        ("[4, 1.2, 1.2]", "the eye of viewpoint \"Seat\" lies in a surface"),
+        ("[1.5, 1.2, 1.8]", "the eye of viewpoint \"Seat\" lies in a surface"),
     ] {
         let text = seat(eye);
         let errors = load_text(&text).unwrap_err();
@@ -834,7 +836,7 @@ fn an_eye_inside_furniture_or_a_wall_is_refused_with_its_line() {
         assert!(errors[0].hint.contains("move the eye"), "{}", errors[0]);
     }
     // Beside and above it there is room.
-    for eye in ["[1.5, 0.9, 1.2]", "[1.5, 1.2, 1.9]", "[4, 1.2, 1.2]"] {
+    for eye in ["[1.5, 0.9, 1.2]", "[1.5, 1.2, 1.801]", "[3.999, 1.2, 1.2]"] {
         assert!(load_text(&seat(eye)).is_ok(), "{eye}");
     }
     let list = room("[lists]\nviewpoints = \"views.csv\"\n");

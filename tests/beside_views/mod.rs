@@ -148,6 +148,12 @@ fn ggr_knows_how_much_of_the_ceiling_shines() {
          [materials]\nCeiling = { emit = 1500, reflectance = 0.5 }\n\
          [[viewpoint]]\nname = \"V\"\neye = [1, 3, 1.2]\ndirection = [1, 0, 0]\nindices = [\"GGR\"]\n";
     assert!(notes(&run(glowing, &[], 32, Effort::default()), "V", "GGR").contains("1.000 of the ceiling"));
+    let hung = format!(
+        "{glowing}[luminaires.A]\nlambert = {{ flux = 2000 }}\narea = {{ rect = [1.2, 0.6] }}\n\
+         [[place]]\nluminaire = \"A\"\nat = [4, 3, 2.5]\n"
+    );
+    let said = notes(&run(&hung, &[], 32, Effort::default()), "V", "GGR");
+    assert!(said.contains("1.000 of the ceiling"), "a lamp under a luminous ceiling: {said}");
     let lit = glowing.replace("Ceiling = { emit", "Wall_N = { emit");
     let reason = figure(&run(&lit, &[], 32, Effort::default()), "V", "GGR").unwrap_err();
     assert_eq!(reason, "nothing of the ceiling shines");
@@ -246,7 +252,7 @@ fn listed(rows: &str) -> Result<gershun::project::Project, String> {
     let files: Vec<File> = vec![("v.csv".into(), rows.as_bytes().to_vec())];
     let folder = folder(text, &files);
     let found = load(&Path::new(folder.path()).join("project.toml"), &LoadOptions::default());
-    found.map_err(|faults| faults.iter().map(|fault| format!("{fault}\n")).collect())
+    found.map_err(|faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
 }
 
 /// Catches: a column of the list that is read and not heeded, or taken for its neighbour; a mistake without its line.

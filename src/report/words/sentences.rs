@@ -335,10 +335,6 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ),
     ("the share of the ceiling that shines is not given", "доля светящейся части потолка не задана"),
     ("nothing of the ceiling shines", "потолок не светится ни в одной части"),
-    (
-        "more shines than all of the ceiling: openings lie one above the other",
-        "светящаяся площадь больше потолка: отверстия лежат друг над другом",
-    ),
     ("{} of the ceiling shines", "доля светящейся части потолка {}"),
     (
         "GGR is made for luminous shares of the ceiling from {} to {}, here {}; below them UGR holds",

@@ -221,7 +221,7 @@ where
     let light_scene = &project.light_scenes[viewpoint.light_scene.unwrap_or(0)];
     let weights = weights(world, light_scene, &world.rooms[viewpoint.room], false);
     let sighted = sighted_from(prepared.emitters(), viewpoint.eye, prepared.seed(), viewpoint.highlights);
-    let ceiling = beside::ceiling(world, &world.rooms[viewpoint.room], &weights);
+    let ceiling = beside::ceiling(world, &world.rooms[viewpoint.room], &weights, &viewpoint.indices);
     let mut found = Vec::new();
     for &convention in conventions {
         let start = found.len();

@@ -319,7 +319,7 @@ impl Context<'_> {
             zones: zones.as_ref().map_err(|reason| *reason),
             field: self.field(room, index, &weights).ok_or(NOT_ASKED),
             ground: self.ground(room, index, &weights, indices),
-            ceiling: beside::ceiling(self.world, &self.world.rooms[room], &weights),
+            ceiling: beside::ceiling(self.world, &self.world.rooms[room], &weights, indices),
         };
         let asked = view::Asked { gaze: planned.direction, indices, convention, beside };
         view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)

@@ -11,7 +11,7 @@ use crate::geometry::polygon;
 use crate::glare::source::{Given, Ground, Sight};
 use crate::glare::{ggr, gr, threshold_increment, vcp};
 use crate::norm::Light;
-use crate::plan::FIELD_HALF_ANGLE_DEG;
+use crate::plan::{FIELD_HALF_ANGLE_DEG, NOT_ASKED};
 use crate::project::{Room, World};
 use crate::scene::Channel;
 use crate::units::{Nits, Undefined};
@@ -177,8 +177,16 @@ impl<'a> Beside<'a> {
 /// luminaires, hung ones too, and surfaces that emit within 0.25 m of its height, one beside the other; CIE 147.
 ///
 /// # Errors
-/// Nothing of it shines.
-pub fn ceiling(world: &World, room: &Room, weights: &[f64]) -> Result<f64, &'static str> {
+/// Nothing of it shines, or none of the indices asks for it: a large scene takes its time.
+pub fn ceiling(
+    world: &World,
+    room: &Room,
+    weights: &[f64],
+    indices: &[&'static str],
+) -> Result<f64, &'static str> {
+    if !indices.contains(&"GGR") {
+        return Err(NOT_ASKED);
+    }
     let scene = &world.scene;
     let shining = room.luminaires.iter().map(|&index| (&scene.luminaires[index], scene.channel_of[index]));
     let openings_m2: f64 = shining

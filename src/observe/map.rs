@@ -99,7 +99,7 @@ const ON_VIEWPOINTS: &str = "maps do not compute it: list a viewpoint, and run `
 
 /// What is known beside the views of a map.
 fn beside_views(world: &World, map: &GlareMap, weights: &[f64]) -> Beside<'static> {
-    let ceiling = beside::ceiling(world, &world.rooms[map.room], weights);
+    let ceiling = beside::ceiling(world, &world.rooms[map.room], weights, &map.indices);
     Beside { zones: Err(NO_TASK), field: Err(ON_VIEWPOINTS), ground: Err(ON_VIEWPOINTS), ceiling }
 }
 

@@ -3,7 +3,7 @@
 
 mod ggx;
 mod lobe;
-mod pane;
+pub mod pane;
 mod phong;
 mod phong_paper;
 mod ward;

@@ -5,7 +5,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::choices::{
-    AreaGrid, EmergencyChoice, Factor, GoalChoice, OneOrTwo, OpeningChoice, Surfacing, TextOrDate,
+    AreaGrid, EmergencyChoice, Factor, GlassChoice, GoalChoice, OneOrTwo, OpeningChoice, Surfacing,
+    TextOrDate,
 };
 
 /// Numbers and names with their place.
@@ -95,7 +96,7 @@ pub struct MaterialSection {
     pub phong_paper: Option<At<f64>>,
     pub ward: Option<At<f64>>,
     pub mirror: Option<At<f64>>,
-    pub glass: Option<At<f64>>,
+    pub glass: Option<At<GlassChoice>>,
     pub opal: Option<At<OpalSection>>,
     pub emit: Option<At<f64>>,
 }

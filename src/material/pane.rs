@@ -6,6 +6,7 @@ pub const MOST_ANGLES: usize = 24;
 
 /// A pane that passes light straight on and mirrors some, the same from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a scene has few materials, and they are read by reference")]
 pub enum Pane {
     /// A plane-parallel plate of one glass, by Fresnel's formulas and Bouguer's law.
     Plate {
@@ -29,8 +30,11 @@ pub struct Table {
 const SODA_LIME: f64 = 1.52;
 
 impl Table {
-    /// A table from rows of {angle of incidence in degrees, transmittance, reflectance}. What is wrong with it, if
-    /// anything: it must lead from 0° to 90° in rising angles, with shares from 0 that together make no more than 1.
+    /// A table from rows of {angle of incidence in degrees, transmittance, reflectance}.
+    ///
+    /// # Errors
+    /// What is wrong with it: it must lead from 0° to 90° in rising angles, with shares from 0 that together make no
+    /// more than 1.
     pub fn new(rows: &[[f64; 3]]) -> Result<Self, String> {
         if !(2..=MOST_ANGLES).contains(&rows.len()) {
             return Err(format!("a table has 2 to {MOST_ANGLES} angles, found {}", rows.len()));
@@ -43,8 +47,8 @@ impl Table {
                 ));
             }
         }
-        if let Some([before, next]) = rows.array_windows().find(|[a, b]| !(b[0] > a[0])) {
-            return Err(format!("angles must rise, found {}° after {}°", next[0], before[0]));
+        if let Some(pair) = rows.windows(2).find(|pair| !(pair[1][0] > pair[0][0])) {
+            return Err(format!("angles must rise, found {}° after {}°", pair[1][0], pair[0][0]));
         }
         let (first, last) = (rows[0], rows[rows.len() - 1]);
         if [first[0], last[0]].map(f64::to_bits) != [0.0f64, 90.0].map(f64::to_bits) {

@@ -78,6 +78,11 @@ pub fn is_unverified(requirement: &Requirement) -> bool {
     requirement.verified == "unverified"
 }
 
+/// Whether it is the project's own requirement, not the norm's.
+pub fn is_own(requirement: &Requirement) -> bool {
+    requirement.standard == PROJECT
+}
+
 /// A requirement in words.
 pub fn sentence(lang: Lang, requirement: &Requirement, naming: Naming) -> Sentence {
     let (quantity, statistic) = (requirement.quantity, requirement.statistic);

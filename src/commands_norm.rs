@@ -62,7 +62,7 @@ pub fn show(name: &str, row: Option<&str>) -> u8 {
     };
     let mut text = standard.head();
     for entry in rows {
-        text.push_str(&format!("\n{}  {}", entry.reference, entry.called()).trim_end());
+        text.push_str(format!("\n{}  {}", entry.reference, entry.called()).trim_end());
         text.push('\n');
         let limits = if row.is_some() { standard.requirements(entry) } else { entry.limits.clone() };
         for limit in limits {

@@ -118,7 +118,7 @@ fn no_area_is_made_for_a_row_that_speaks_of_a_part_of_the_room() {
 /// Catches: a screen that may have 200 lx at most judged at the end of its maintenance interval, when it has least.
 #[test]
 fn an_upper_limit_is_judged_for_a_new_installation() {
-    let screen = area("Screen", "rect = { origin = [3, 1, 1], u = [0, 0, 1], v = [0, 2, 0] }");
+    let screen = area("Screen", "rect = { origin = [3, 1, 0.5], u = [0, 0, 1], v = [0, 2, 0] }");
     let judged = |maintenance: f64| {
         let rest = format!(
             "row = \"17-screen\"\n{screen}[[require]]\narea = \"Screen\"\nquantity = \"E_n\"\nstatistic = \"mean\"\nmin = 1\n"
@@ -136,4 +136,20 @@ fn an_upper_limit_is_judged_for_a_new_installation() {
     assert!((upper_lx / new_lx - 1.0).abs() < 1e-9, "{upper_lx} of {new_lx} lx");
     assert!((lower_lx / new_lx - 0.5).abs() < 1e-9, "a lower limit is maintained");
     assert_eq!((upper.as_str(), lower.as_str()), ("initial", "maintained"));
+}
+
+/// Catches: an area on another plane than its row's that is judged without a word beside the verdict.
+#[test]
+fn a_verdict_on_another_plane_says_so() {
+    let level = |z: f64| format!("rect = {{ origin = [1, 1, {z}], u = [2, 0, 0], v = [0, 2, 0] }}");
+    let board = |z: f64| {
+        format!("row = \"15-board\"\nrect = {{ origin = [0.02, 1, {z}], u = [0, 2, 0], v = [0, 0, 1] }}")
+    };
+    let areas = [("Floor", level(0.0)), ("Desk", level(0.8)), ("Low", board(0.3)), ("Board", board(1.0))];
+    let areas = areas.map(|(name, shape)| area(name, &shape)).concat();
+    let outcome = black("sanpin-1.2.3685-21", "", &format!("row = \"15\"\n{areas}"));
+    let note = |name: &str| of(&outcome, name, Statistic::Mean).note.clone();
+    assert_eq!(note("Floor"), "maintained; area at 0.00 m, the row names a plane at 0.80 m");
+    assert_eq!(note("Low"), "maintained; area at 0.80 m, the row names a plane at 1.50 m");
+    assert_eq!([note("Desk"), note("Board")], ["maintained", "maintained"]);
 }

@@ -8,7 +8,7 @@ use crate::measure::glare_sources::Convention;
 use crate::measure::zones::ZoneLight;
 use crate::measure::{Gauged, area, intensity, room_ugr, view};
 use crate::outcome::{Bound, Condition, UgrTableOutcome, Verdict};
-use crate::plan::{BEHIND, PlannedRequirement, Subject};
+use crate::plan::{BEHIND, PlannedRequirement, Subject, other_plane};
 use crate::project::{Declared, Room};
 use crate::quantity::{Property, Quantity};
 use crate::scene::Channel;
@@ -42,7 +42,10 @@ impl Context<'_> {
                 let condition = self.condition_of(planned);
                 let weights = self.weights_in(condition.state, planned.light_scene, entry);
                 let blocks = area::blocks(&self.answers, asked, &weights, condition.light);
-                let note = noted(condition, &[&blocks]);
+                let mut note = noted(condition, &[&blocks]);
+                if let Some([found_m, named_m]) = self.other_plane(room, *place, planned) {
+                    note = format!("{note}; area at {found_m:.2} m, the row names a plane at {named_m:.2} m");
+                }
                 (area::gauge(&blocks, planned.statistic, alpha), note, None)
             }
             Subject::Viewpoint(viewpoint) => {
@@ -107,6 +110,13 @@ impl Context<'_> {
                 Some(Verdict::NotAssessed),
             ),
         }
+    }
+
+    /// Height of an area and of the plane that the norm's row names, where they differ, m.
+    fn other_plane(&self, room: usize, place: usize, planned: &PlannedRequirement) -> Option<[f64; 2]> {
+        let norm = self.project.norm.as_ref().filter(|norm| norm.standard.id == planned.standard)?;
+        let row = norm.standard.row(&planned.clause)?;
+        other_plane(row, &self.world.rooms[room], &self.plan.rooms[room].areas[place])
     }
 
     /// Largest emergency intensity among the luminaires of a type that hang in a class of heights, initial.

@@ -6,7 +6,7 @@ use super::sentence::{
 };
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::put;
-use crate::outcome::{Outcome, Requirement, Verdict};
+use crate::outcome::{OTHER_PLANE, Outcome, Requirement, Verdict};
 
 /// Above this many rooms the table has one line per room and lists only what does not pass.
 const ROOMS_IN_FULL: usize = 12;
@@ -170,6 +170,12 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
                 true,
                 format!("{symbol} · {}: {said}", one_line(&words::place_name(lang, &requirement.subject))),
             );
+        }
+        if let Some(said) = requirement.note.split("; ").find(|part| part.contains(OTHER_PLANE)) {
+            let said = words::said(lang, said);
+            let symbol = words::symbol(lang, requirement.quantity, requirement.statistic).text();
+            let place = one_line(&words::place_name(lang, &requirement.subject));
+            note(true, format!("{symbol} · {place}: {said}"));
         }
         if let Some(other) = requirement.other_comparison {
             let subject = format!(

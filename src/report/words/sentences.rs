@@ -457,6 +457,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "no row of the norm is given: name one in the room, its areas or [norm]",
         "строка нормы не указана: назовите её для помещения, его областей или в [norm]",
     ),
+    (
+        "area at {} m, the row names a plane at {} m",
+        "область на высоте {} м, строка называет плоскость на высоте {} м",
+    ),
     ("the norm's file has no value of {} for row {}", "в файле нормы нет значения {} для строки {}"),
     (
         "the norm judges UGR at observers and the project lists no viewpoint here",

@@ -3,10 +3,12 @@
 
 mod projects;
 
+use std::process::Command;
+
 use gershun::outcome::{Bound, Outcome, Requirement, Verdict};
 use gershun::quantity::Statistic;
 use gershun::solve::Effort;
-use projects::run;
+use projects::{folder, run};
 
 /// A black box of 6 × 4 × 3 m with one luminaire aside of its middle, so that no two places are lit alike.
 fn black(norm: &str, luminaire: &str, rest: &str) -> Outcome {
@@ -152,4 +154,32 @@ fn a_verdict_on_another_plane_says_so() {
     assert_eq!(note("Floor"), "maintained; area at 0.00 m, the row names a plane at 0.80 m");
     assert_eq!(note("Low"), "maintained; area at 0.80 m, the row names a plane at 1.50 m");
     assert_eq!([note("Desk"), note("Board")], ["maintained", "maintained"]);
+}
+
+/// Catches: one's own requirement taken for a limit of the norm, a plane that only the report tells of.
+#[test]
+fn the_table_marks_what_the_norm_does_not_say() {
+    let text = "[scene]\nbox = { size = [6, 4, 3], floor = 0.2, walls = 0.5, ceiling = 0.7 }\n\
+                [luminaires.A]\npoint = { flux = 20000 }\n[[place]]\nluminaire = \"A\"\nat = [2, 1.7, 2.8]\n\
+                [norm]\nstandard = \"sanpin-1.2.3685-21\"\nrow = \"15\"\n\
+                [[area]]\nname = \"Floor\"\nrect = { origin = [1, 1, 0], u = [2, 0, 0], v = [0, 2, 0] }\n\
+                [[require]]\narea = \"Floor\"\nquantity = \"E_h\"\nstatistic = \"mean\"\nmin = 30\n";
+    let folder = folder(text, &[]);
+    let said = |text: &str| {
+        std::fs::write(folder.path().join("project.toml"), text).expect("a file");
+        let command =
+            [env!("CARGO_BIN_EXE_gershun"), "check", "--accuracy", "draft", "--lang", "en", "--out"];
+        let mut command = command.map(std::ffi::OsString::from).to_vec();
+        command.extend([folder.path().join("out").into(), folder.path().into()]);
+        let output = Command::new(&command[0]).args(&command[1..]).output().expect("it runs");
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let table = said(text);
+    let own: Vec<&str> = table.lines().filter(|line| line.contains("lx*")).collect();
+    assert!(own.len() == 1 && own[0].contains("≥ 30"), "{table}");
+    assert!(table.contains("\n* the project's own requirement"), "{table}");
+    assert!(table.contains("Floor: area at 0.00 m, the row names a plane at 0.80 m"), "{table}");
+    // Without a norm all requirements are the project's own: nothing to mark.
+    let alone = text.replace("[norm]\nstandard = \"sanpin-1.2.3685-21\"\nrow = \"15\"\n", "");
+    assert!(said(&alone).contains("≥ 30") && !said(&alone).contains('*'), "{}", said(&alone));
 }

@@ -115,7 +115,7 @@ impl Standard {
     /// Name, title, edition and note, what there is of them, on lines of their own.
     pub fn head(&self) -> String {
         let mut text = self.short.clone();
-        for (before, part) in [(", ", &self.title), (", edition ", &self.edition), ("\n", &self.note)] {
+        for (before, part) in [(": ", &self.title), (", edition ", &self.edition), ("\n", &self.note)] {
             if !part.is_empty() {
                 let _ = write!(text, "{before}{part}");
             }
@@ -272,6 +272,15 @@ fn round(value: f64) -> f64 {
 mod tests {
     use super::super::bundled;
     use super::*;
+
+    /// Catches: colons and commas round what a house norm of two lines does not say.
+    #[test]
+    fn what_is_not_there_leaves_no_punctuation() {
+        let house = Standard::parse("id = \"house\"\nrow = [{ ref = \"1\", em = 300 }]\n", "house.toml");
+        let house = house.unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(house.head(), "house\n");
+        assert!(explain_row(&house, &house.rows[0]).starts_with("house\n\n1\n"));
+    }
 
     /// Catches: a rule or a limit that the loader reads and nobody is told of.
     #[test]

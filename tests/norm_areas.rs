@@ -85,6 +85,14 @@ fn an_upright_plane_in_the_room_has_two_sides() {
     );
 }
 
+/// The other broken twin: who asks for E_n in so many words gets the normal of the edges as they are listed.
+#[test]
+fn a_side_that_was_chosen_is_kept() {
+    let asked = "quantities = [\"E_n\"]\nrect = { origin = [0.02, 1, 1], u = [0, 0, 1], v = [0, 2, 0] }";
+    let outcome = black("en-12464-1-2021", "", &format!("row = \"34.2\"\n{}", area("Back", asked)));
+    assert!(value(&outcome, "Back").abs() < 1e-9, "it faces the wall");
+}
+
 const EMERGENCY: &str = "emergency = { flux = 200 }\nmaintenance = 0.8";
 
 /// Catches: a court taken for the whole hall, an escape route judged without its ends, where it is darkest (0.98 lx

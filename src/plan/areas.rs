@@ -116,10 +116,14 @@ fn rule_of(spec: &AreaSpec, corners: &[DVec3], normal: DVec3, holes: &[Vec<DVec2
 
 /// The side on which an area is measured, in whichever order its corners or edges were listed: planes of work
 /// nearer to level than to upright are lit from above, what stands or hangs at the room's shell is lit from the room.
-/// As it is where both sides lie in the room, or none.
-fn lit_side(kind: AreaKind, room: &Room, middle: DVec3, normal: DVec3) -> DVec3 {
+/// As it is where both sides lie in the room, or none, and where the project asks for `E_n` in so many words.
+fn lit_side(spec: &AreaSpec, room: &Room, middle: DVec3, normal: DVec3) -> DVec3 {
     let unit = normal.normalize_or_zero();
-    match kind {
+    let is_chosen = spec.quantities.contains(&Quantity::Normal) && spec.kind != AreaKind::Surface;
+    if is_chosen {
+        return normal;
+    }
+    match spec.kind {
         AreaKind::Volume => normal,
         AreaKind::Task | AreaKind::Surrounding | AreaKind::Background if unit.z.abs() > LEVEL => {
             normal * normal.z.signum()
@@ -137,7 +141,7 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene, holes: &[Vec<DVec2>]) -> Res
     let spacing = |axis: DVec3| grid::regular_spacing_m(&lights, axis.normalize_or_zero());
     match &spec.shape {
         AreaShape::Rect { origin, u, v } => {
-            let normal = lit_side(spec.kind, room, *origin + 0.5 * (*u + *v), u.cross(*v));
+            let normal = lit_side(spec, room, *origin + 0.5 * (*u + *v), u.cross(*v));
             let corners = [*origin, *origin + *u, *origin + *u + *v, *origin + *v];
             let grid = grid::rectangle(
                 *origin,
@@ -177,7 +181,7 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene, holes: &[Vec<DVec2>]) -> Res
                 true => DVec3::Z,
                 false => {
                     let middle = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
-                    lit_side(spec.kind, room, middle, normal)
+                    lit_side(spec, room, middle, normal)
                 }
             };
             let rule = rule_of(spec, corners, normal, holes);

@@ -13,6 +13,7 @@ mod zones;
 
 use glam::DVec3;
 
+pub use requirements::other_plane;
 pub use tasks::{BEHIND, PlannedTask, TaskZones, concerns_task};
 
 use crate::grid::{self, Grid, GridError};

@@ -212,21 +212,30 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ),
     // What norms ask for and nothing computes.
     (
-        "half of it within 5 s and all of it within 60 s (two sources)",
-        "половина через 5 с, полная величина через 60 с (два источника)",
+        "response time: half of the light within 5 s, all of it within 60 s (two sources)",
+        "время включения: половина освещённости через 5 с, полная через 60 с (два источника)",
     ),
     (
-        "half of it within 5 s and all of it within 60 s (one source)",
-        "половина через 5 с, полная величина через 60 с (один источник)",
+        "response time: half of the light within 5 s, all of it within 60 s (one source)",
+        "время включения: половина освещённости через 5 с, полная через 60 с (один источник)",
     ),
-    ("at least 1 h (one source)", "не менее 1 ч (один источник)"),
-    ("luminaires at 2 m and higher (one source)", "светильники на высоте 2 м и выше (один источник)"),
+    ("duration: at least 1 h (one source)", "продолжительность: не менее 1 ч (один источник)"),
     (
-        "all of it at once or within 0.5 s (two sources)",
-        "полная величина сразу или через 0,5 с (два источника)",
+        "mounting: luminaires at 2 m and higher (one source)",
+        "установка: светильники на высоте 2 м и выше (один источник)",
     ),
-    ("all of it within 0.5 s (one source)", "полная величина через 0,5 с (один источник)"),
-    ("as long as the risk lasts (one source)", "пока сохраняется опасность (один источник)"),
+    (
+        "response time: all of the light at once or within 0.5 s (two sources)",
+        "время включения: полная освещённость сразу или через 0,5 с (два источника)",
+    ),
+    (
+        "response time: all of the light within 0.5 s (one source)",
+        "время включения: полная освещённость через 0,5 с (один источник)",
+    ),
+    (
+        "duration: as long as the risk lasts (one source)",
+        "продолжительность: пока сохраняется опасность (один источник)",
+    ),
     ("no stroboscopic effect (one source)", "без стробоскопического эффекта (один источник)"),
     ("colour temperature from {} K to {} K", "цветовая температура от {} К до {} К"),
     ("contrast of the edges of steps", "контраст кромок ступеней"),
@@ -448,6 +457,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "no row of the norm is given: name one in the room, its areas or [norm]",
         "строка нормы не указана: назовите её для помещения, его областей или в [norm]",
     ),
+    (
+        "area at {} m, the row names a plane at {} m",
+        "область на высоте {} м, строка называет плоскость на высоте {} м",
+    ),
     ("the norm's file has no value of {} for row {}", "в файле нормы нет значения {} для строки {}"),
     (
         "the norm judges UGR at observers and the project lists no viewpoint here",
@@ -460,6 +473,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     (
         "the project lists no volume at {} m, the eye height of the row",
         "в проекте не задан объём на высоте {} м – высоте глаз для этой строки",
+    ),
+    (
+        "row {} speaks of a part of the room: list that part as an area",
+        "строка {} относится к части помещения: задайте эту часть как область",
     ),
     ("the project lists no {} round this task area", "вокруг этой рабочей области в проекте не задано: {}"),
     (

@@ -114,8 +114,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         run.push((pair.ratio().value, lo, hi));
         let sighted = sighted_from(prepared.emitters(), eye, seed, true);
         let eye_light = view::EyeLight::of_row(&answers, 3, &light);
-        let asked =
-            view::Asked { gaze, indices: &[], convention: Convention::default(), zones: Err("no task") };
+        let asked = view::Asked {
+            gaze,
+            indices: &[],
+            convention: Convention::default(),
+            zones: Err("no task"),
+            given: gershun::glare::source::Given::default(),
+        };
         let glare = view::glare(&eye_light, prepared.emitters(), &sighted, &asked, &light, ALPHA).ugr;
         run.push((glare.value.unwrap_or(f64::NAN), glare.lo, glare.hi));
         for row in [4, demand.rows() - 1] {

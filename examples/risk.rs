@@ -132,6 +132,7 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         light_scene: None,
         highlights: true,
         task: Task::default(),
+        given: gershun::glare::source::Given::default(),
         written: None,
     }];
     Ok(project)

@@ -196,7 +196,8 @@ fn of_viewpoint(
         for (number, &gaze) in viewpoint.directions.iter().enumerate() {
             let zones = zones(index, number, &weights);
             let zones = zones.as_ref().map_err(|reason| *reason);
-            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention, zones };
+            let given = viewpoint.given;
+            let asked = view::Asked { gaze, indices: &viewpoint.indices, convention, zones, given };
             let light = light(index, number, &weights, &sighted);
             let glare = view::glare(&light, prepared.emitters(), &sighted, &asked, &weights, alpha);
             found.push(Observed {

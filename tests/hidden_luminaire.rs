@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use gershun::emitters::{Emitters, Sighted, sighted_from};
 use gershun::estimate::{Estimate, quantile};
+use gershun::glare::source::Given;
 use gershun::measure::glare_sources::{Convention, SourceModel};
 use gershun::measure::view::{Asked, EyeLight, glare};
 use gershun::measure::weights;
@@ -59,7 +60,8 @@ fn read(project: &Project, seed: u64, sources: SourceModel) -> Read {
     let exact = |lx: f64| Estimate::exact(lx, 64);
     let light = EyeLight { from_luminaires: exact(400.0), indirect: exact(100.0 * PI) };
     let convention = Convention { sources, ..Convention::default() };
-    let asked = Asked { gaze: DVec3::X, indices: &[], convention, zones: Err("no task") };
+    let asked =
+        Asked { gaze: DVec3::X, indices: &[], convention, zones: Err("no task"), given: Given::default() };
     let found = glare(&light, &emitters, &sighted, &asked, &weights, 0.05);
     let ugr = found.ugr.value.clone().expect("a source is seen");
     // 8/ln 10 · (2 δl/l + δω/ω) of the only luminaire.

@@ -289,7 +289,8 @@ impl Context<'_> {
         let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
         let zones = self.zones(room, index, &weights).ok_or(BEHIND);
         let zones = zones.as_ref().map_err(|reason| *reason);
-        let asked = view::Asked { gaze: planned.direction, indices, convention, zones };
+        let given = self.world.viewpoints[planned.viewpoint].given;
+        let asked = view::Asked { gaze: planned.direction, indices, convention, zones, given };
         view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
     }
 }

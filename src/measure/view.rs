@@ -13,7 +13,7 @@ use crate::emitters::{Emitters, Sighted};
 use crate::estimate::{Estimate, quantile};
 use crate::glare::index::{Index, parse};
 use crate::glare::propagate::{SightError, Spread, standard_error};
-use crate::glare::source::{GlareSource, Sight};
+use crate::glare::source::{Given, GlareSource, Sight};
 use crate::glare::ugr::{ugr, validity};
 use crate::glare::veiling::STRAYED;
 use crate::outcome::{GlareSourceOutcome, IndexOutcome};
@@ -31,6 +31,8 @@ pub struct Asked<'a> {
     pub convention: Convention,
     /// Light of the zones about the task, or why it is not known.
     pub zones: Result<&'a ZoneLight, &'a str>,
+    /// What no view tells.
+    pub given: Given,
 }
 
 /// Glare of one observer in one direction under one light scene.
@@ -122,6 +124,7 @@ pub fn glare(
             Vec::new()
         },
         zones: Some(asked.zones.map(ZoneLight::zones).map_err(Undefined::because)),
+        given: asked.given,
         ..Sight::default()
     };
     let error = SightError {

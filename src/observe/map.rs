@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::emitters::{Emitters, Lookout, SeenPiece, Sighted, sighted_from};
 use crate::estimate::Estimate;
+use crate::glare::source::Given;
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
 use crate::outcome::{IndexOutcome, Interval};
@@ -178,7 +179,13 @@ pub fn swift_eyes(
                 from_luminaires: from_luminaires(&sighted, emitters, gaze, &weights),
                 indirect: Estimate::from_blocks(&of_replicates),
             };
-            let asked = view::Asked { gaze, indices: &map.indices, convention, zones: Err(NO_TASK) };
+            let asked = view::Asked {
+                gaze,
+                indices: &map.indices,
+                convention,
+                zones: Err(NO_TASK),
+                given: Given::default(),
+            };
             let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
             let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
             (glare.ugr.interval(), further)
@@ -255,7 +262,13 @@ pub fn unbiased_at(
             let views = sights.iter().enumerate().map(|(direction, &gaze)| {
                 let row = first_rows[receiver + number] + direction;
                 let light = view::EyeLight::of_row(&answers, row, &weights);
-                let asked = view::Asked { gaze, indices: &map.indices, convention, zones: Err(NO_TASK) };
+                let asked = view::Asked {
+                    gaze,
+                    indices: &map.indices,
+                    convention,
+                    zones: Err(NO_TASK),
+                    given: Given::default(),
+                };
                 let glare = view::glare(&light, emitters, &sighted, &asked, &weights, alpha);
                 let further = glare.indices.iter().map(view::GaugedIndex::outcome).collect();
                 (glare.ugr.interval(), further)

@@ -262,6 +262,17 @@ pub struct ViewpointSection {
     pub highlights: Option<At<bool>>,
     pub task: Option<At<[f64; 3]>>,
     pub task_deg: Option<At<f64>>,
+    pub age: Option<At<f64>>,
+    pub ceiling_coverage: Option<At<f64>>,
+    pub ground: Option<GroundSection>,
+    pub road: Option<At<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroundSection {
+    pub lx: At<f64>,
+    pub reflectance: At<f64>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -10,10 +10,12 @@ use super::draft::{Draft, Located, locate};
 use super::lists::Table;
 use crate::glare::index::{self, INDICES, parse};
 use crate::glare::luminances::FIELD_HALF_ANGLES_DEG;
+use crate::glare::source::{Given, Ground};
 use crate::project::context::Context;
-use crate::project::schema::{At, File, SweepSection, ViewpointSection};
+use crate::project::schema::{At, File, GroundSection, SweepSection, ViewpointSection};
 use crate::project::{LightScene, Task, Viewpoint};
 use crate::sphere::{azimuth_tilt_deg, from_azimuth_tilt, rounded_deg};
+use crate::units::Nits;
 
 /// Directions one sweep may have.
 const MAX_DIRECTIONS: f64 = 3600.0;
@@ -34,6 +36,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         };
         let (directions, azimuths_deg): (Vec<DVec3>, Vec<f64>) = lines.into_iter().unzip();
         let Some(task) = task(section, eye, &directions, context) else { continue };
+        let Some(given) = given(section, context) else { continue };
         if section.task.is_some() || section.task_deg.is_some() {
             let further = index::of_task().map(|index| index.key).filter(|key| !indices.contains(key));
             indices.extend(further.collect::<Vec<_>>());
@@ -49,6 +52,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             light_scene,
             highlights: section.highlights.as_ref().is_none_or(|wanted| *wanted.get_ref()),
             task,
+            given,
             written: Some(context.place(&section.eye.span())),
         };
         let mut report = |context: &mut Context, message: String| {
@@ -87,6 +91,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
                 light_scene: None,
                 highlights: true,
                 task: Task::default(),
+                given: Given::default(),
                 written: Some(table.place(row)),
             };
             let mut report = |context: &mut Context, message: String| {
@@ -173,6 +178,33 @@ fn task(section: &ViewpointSection, eye: DVec3, directions: &[DVec3], context: &
         }
     }
     Some(task)
+}
+
+/// Ages of observers, years.
+const AGES: [f64; 2] = [1.0, 120.0];
+
+/// What no view tells: GGR asks for the ceiling, GR for the ground, f_TI for the road, veiling luminance for the age.
+fn given(section: &ViewpointSection, context: &mut Context) -> Option<Given> {
+    let mut given = Given::default();
+    let mut ok = true;
+    if let Some(age) = &section.age {
+        ok &= context.in_range(age, AGES[0], AGES[1], "age");
+        given.age_years = *age.get_ref();
+    }
+    if let Some(coverage) = &section.ceiling_coverage {
+        ok &= context.in_range(coverage, f64::MIN_POSITIVE, 1.0, "ceiling_coverage");
+        given.ceiling_coverage = Some(*coverage.get_ref());
+    }
+    if let Some(GroundSection { lx, reflectance }) = &section.ground {
+        ok &= context.in_range(lx, 0.0, f64::INFINITY, "lx of the ground");
+        ok &= context.in_range(reflectance, 0.0, 1.0, "reflectance of the ground");
+        given.ground = Some(Ground { mean_lx: *lx.get_ref(), reflectance: *reflectance.get_ref() });
+    }
+    if let Some(road) = &section.road {
+        ok &= context.in_range(road, 0.0, f64::INFINITY, "road");
+        given.road = Some(Nits(*road.get_ref()));
+    }
+    ok.then_some(given)
 }
 
 /// Lines of sight with their azimuths in degrees: those of a sweep as it is written where nothing else sets its

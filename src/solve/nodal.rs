@@ -26,6 +26,9 @@ const STREAM: u64 = u64::MAX - 7;
 /// Tables are sampled at least this far above the horizon (cos θ): *at* it lobes are dark, their limit is not.
 const HORIZON: f64 = 1e-3;
 
+/// One of so many rays is walked on from.
+const RAYS_PER_WALK: u32 = 2;
+
 /// Which light the nodes store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StoredLight {
@@ -237,14 +240,33 @@ fn diffusely(prepared: &Prepared, spot: &Spot, rays: u32, rng: &mut Rng, desk: &
         let facing = if side * albedo < reflectance { here.normal } else { -here.normal };
         let direction = sphere::frame(facing) * sphere::cosine_hemisphere([u, v]);
         let origin = here.origin(prepared.scene, here.normal.dot(direction) > 0.0);
-        see(prepared, origin, direction, ANALOG, rng, desk);
-        walk(prepared, rng, desk);
-        let share = albedo / f64::from(rays);
-        for (sum, (seen, residual)) in found.indirect.iter_mut().zip(desk.seen.iter().zip(&desk.residual)) {
-            *sum += share * (seen + residual);
-        }
+        add_arriving(prepared, (origin, direction), [ray, rays], albedo, rng, desk, &mut found.indirect);
     }
     found
+}
+
+/// Adds the luminance that arrives along ray number `ray` of `rays`, times `weight`: what is stored where it ends,
+/// and by the first few of them walks that mend it.
+fn add_arriving(
+    prepared: &Prepared,
+    (origin, direction): (DVec3, DVec3),
+    [ray, rays]: [u32; 2],
+    weight: f64,
+    rng: &mut Rng,
+    desk: &mut Desk,
+    out: &mut [f64],
+) {
+    see(prepared, origin, direction, ANALOG, rng, desk);
+    for (sum, seen) in out.iter_mut().zip(&desk.seen) {
+        *sum += weight / f64::from(rays) * seen;
+    }
+    let walks = rays.div_ceil(RAYS_PER_WALK);
+    if ray < walks {
+        walk(prepared, rng, desk);
+        for (sum, residual) in out.iter_mut().zip(&desk.residual) {
+            *sum += weight / f64::from(walks) * residual;
+        }
+    }
 }
 
 /// Adds one sample of what luminaires make diffuse luminance, times `share`.
@@ -282,11 +304,7 @@ fn by_lobe(
         let point = sequence.point(ray, rng);
         let onward = add_glossy_lamps(prepared, &here, point, share, rng, desk, &mut found.direct);
         let Some((origin, direction, weight)) = onward else { continue };
-        see(prepared, origin, direction, ANALOG, rng, desk);
-        walk(prepared, rng, desk);
-        for (sum, (seen, residual)) in found.indirect.iter_mut().zip(desk.seen.iter().zip(&desk.residual)) {
-            *sum += share * weight * (seen + residual);
-        }
+        add_arriving(prepared, (origin, direction), [ray, rays], weight, rng, desk, &mut found.indirect);
     }
     found
 }

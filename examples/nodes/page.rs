@@ -1,0 +1,274 @@
+//! What the study writes.
+
+use std::error::Error as Failure;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::figure::{Figure, Series};
+use crate::looks::HEIGHT_M;
+use crate::{EXPONENTS, LIGHTS, Row};
+
+const WORDS: &str = include_str!("words.md");
+const FORMS: [&str; 3] = ["θ–φ grid", "spherical harmonics", "octahedral map"];
+
+pub fn write(rows: &[Row], largest: &[(u32, [f64; 2])]) -> Result<(), Box<dyn Failure>> {
+    let folder = Path::new("reports/nodes");
+    std::fs::create_dir_all(folder)?;
+    std::fs::write(folder.join("nodes.csv"), csv(rows))?;
+    std::fs::write(folder.join("effort.csv"), effort(rows))?;
+    let pages = [
+        ("{largest}", brightest(largest)),
+        ("{directions}", directions(rows)),
+        ("{positions}", positions(rows)),
+        ("{law}", law(rows)),
+        ("{whole}", whole(rows)),
+        ("{meshes}", meshes(rows)),
+        ("{today}", today(rows)),
+    ];
+    let text = pages.iter().fold(WORDS.to_owned(), |text, (key, table)| text.replace(key, table.trim_end()));
+    std::fs::write(folder.join("README.md"), text)?;
+    for light in 0..2 {
+        std::fs::write(folder.join(format!("directions-{}.svg", LIGHTS[light])), by_directions(rows, light))?;
+        std::fs::write(folder.join(format!("law-{}.svg", LIGHTS[light])), by_spacing(rows, light))?;
+    }
+    for (key, table) in pages {
+        println!("{key}\n{table}");
+    }
+    Ok(())
+}
+
+fn shown(exponent: Option<u32>) -> String {
+    exponent.map_or("–".into(), |n| n.to_string())
+}
+
+/// Everything that is the same at every run.
+fn csv(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "part,light,exponent,way,numbers_per_node_or_rays_per_look,spacing_m,nodes_on_floor,bytes_on_floor,rays_per_number,rms_percent,largest_percent,interpolation_rms_percent,reference_se_percent\n",
+    );
+    for row in rows {
+        let Row { part, light, exponent, way, numbers, spacing_m, nodes, rays, error, .. } = row;
+        let (light, exponent, interpolation) = (LIGHTS[*light], shown(*exponent), error.interpolation_text());
+        let _ = writeln!(
+            text,
+            "{part},{light},{exponent},\"{way}\",{numbers},{spacing_m},{nodes},{},{rays},{:.3},{:.3},{interpolation},{:.3}",
+            row.bytes(),
+            error.rms,
+            error.largest,
+            error.reference
+        );
+    }
+    text
+}
+
+/// CPU times, which differ from run to run.
+fn effort(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "part,light,exponent,way,numbers_per_node_or_rays_per_look,spacing_m,cpu_s_of_floor_or_look\n",
+    );
+    for row in rows.iter().filter(|row| row.cpu_s > 0.0) {
+        let Row { part, light, exponent, way, numbers, spacing_m, cpu_s, .. } = row;
+        let (light, exponent) = (LIGHTS[*light], shown(*exponent));
+        let _ = writeln!(text, "{part},{light},{exponent},\"{way}\",{numbers},{spacing_m},{cpu_s:.3e}");
+    }
+    text
+}
+
+fn brightest(largest: &[(u32, [f64; 2])]) -> String {
+    let one = |(n, [all, indirect]): &(u32, [f64; 2])| format!("| {n} | {all:.0} | {indirect:.1} |\n");
+    largest.iter().map(one).collect()
+}
+
+fn of<'r>(rows: &'r [Row], part: &'r str, light: usize, exponent: u32) -> impl Iterator<Item = &'r Row> {
+    rows.iter().filter(move |row| row.part == part && row.light == light && row.exponent == Some(exponent))
+}
+
+/// Interpolation error of every size of every form.
+fn directions(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for light in 0..2 {
+        for exponent in EXPONENTS {
+            let _ = write!(text, "| {} | {exponent} |", LIGHTS[light]);
+            for form in FORMS {
+                let cells = of(rows, "direction", light, exponent).filter(|row| row.way == form);
+                let list: Vec<String> =
+                    cells.map(|row| format!("{}: {}", row.numbers, row.error.interpolation_text())).collect();
+                let _ = write!(text, " {} |", list.join("; "));
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+fn positions(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for light in 0..2 {
+        for exponent in EXPONENTS {
+            let cells = of(rows, "position", light, exponent).map(|row| row.error.interpolation_text());
+            let _ = writeln!(
+                text,
+                "| {} | {exponent} | {} |",
+                LIGHTS[light],
+                cells.collect::<Vec<String>>().join(" | ")
+            );
+        }
+    }
+    text
+}
+
+/// Where the error of interpolation crosses a value between two measured spacings, straight in logarithms.
+fn crossing(rows: &[Row], light: usize, exponent: u32, percent: f64) -> Option<f64> {
+    let known: Vec<(f64, f64)> = of(rows, "position", light, exponent)
+        .filter_map(|row| Some((row.spacing_m, row.error.interpolation()?)))
+        .collect();
+    known.windows(2).find_map(|pair| {
+        let [(wide, worse), (close, better)] = [pair[0], pair[1]];
+        (worse >= percent && better < percent).then(|| {
+            let share = (percent / better).ln() / (worse / better).ln();
+            close * (wide / close).powf(share)
+        })
+    })
+}
+
+fn law(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for light in 0..2 {
+        for exponent in EXPONENTS {
+            let root = f64::from(exponent).sqrt();
+            let cell = |percent: f64| {
+                crossing(rows, light, exponent, percent).map_or("– | –".into(), |spacing_m| {
+                    format!("{spacing_m:.2} m | {:.2}", spacing_m * root / HEIGHT_M)
+                })
+            };
+            let _ = writeln!(text, "| {} | {exponent} | {} | {} |", LIGHTS[light], cell(1.0), cell(3.0));
+        }
+    }
+    text
+}
+
+/// Rays at which patches and lobe rays err as much, and their CPU time, straight in logarithms.
+fn equal(rows: &[Row], light: usize, exponent: u32, rms: f64) -> Option<(f64, f64)> {
+    let list: Vec<&Row> = of(rows, "today", light, exponent).collect();
+    let between = list.windows(2).find(|pair| pair[0].error.rms >= rms && pair[1].error.rms < rms);
+    let [few, many] = between.map(|pair| [pair[0], pair[1]])?;
+    let share = (rms / few.error.rms).ln() / (many.error.rms / few.error.rms).ln();
+    let at = |a: f64, b: f64| a * (b / a).powf(share);
+    Some((at(f64::from(few.rays), f64::from(many.rays)), at(few.cpu_s, many.cpu_s)))
+}
+
+fn whole(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for exponent in EXPONENTS {
+        for row in rows.iter().filter(|row| row.part == "whole" && row.exponent == Some(exponent)) {
+            let (rays, looks) = match equal(rows, row.light, exponent, row.error.rms) {
+                Some((rays, cpu_s)) => (format!("{rays:.0}"), format!("{:.0}", 1e-3 * row.cpu_s / cpu_s)),
+                None if of(rows, "today", row.light, exponent)
+                    .any(|today| today.error.rms < row.error.rms) =>
+                {
+                    (
+                        "< 1".into(),
+                        format!("> {:.0}", 1e-3 * row.cpu_s / first_cpu_s(rows, row.light, exponent)),
+                    )
+                }
+                None => ("> 256".into(), "–".into()),
+            };
+            let _ = writeln!(
+                text,
+                "| {exponent} | {} | {} | {} | {:.2} | {} | {:.1} | {:.2} MB | {:.0} | {rays} | {looks} |",
+                row.way,
+                row.spacing_m,
+                row.numbers,
+                row.error.rms,
+                row.error.interpolation_text(),
+                row.error.largest,
+                1e-6 * row.bytes() as f64,
+                row.cpu_s
+            );
+        }
+    }
+    text
+}
+
+fn first_cpu_s(rows: &[Row], light: usize, exponent: u32) -> f64 {
+    of(rows, "today", light, exponent).map(|row| row.cpu_s).fold(f64::INFINITY, f64::min)
+}
+
+fn meshes(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for row in rows.iter().filter(|row| row.part == "mesh") {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {:.2} | {} | {:.1} | {:.0} kB | {:.1} |",
+            shown(row.exponent),
+            LIGHTS[row.light],
+            row.way,
+            row.spacing_m,
+            row.nodes,
+            row.error.rms,
+            row.error.interpolation_text(),
+            row.error.largest,
+            1e-3 * row.bytes() as f64,
+            row.cpu_s
+        );
+    }
+    text
+}
+
+fn today(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for light in 0..2 {
+        for exponent in EXPONENTS {
+            let cells = of(rows, "today", light, exponent)
+                .map(|row| format!("{:.2} ({:.0} µs)", row.error.rms, 1e6 * row.cpu_s));
+            let _ = writeln!(
+                text,
+                "| {} | {exponent} | {} |",
+                LIGHTS[light],
+                cells.collect::<Vec<String>>().join(" | ")
+            );
+        }
+    }
+    text
+}
+
+fn by_directions(rows: &[Row], light: usize) -> String {
+    let mut series = Vec::new();
+    for exponent in [10, 100] {
+        for form in FORMS {
+            let cells = of(rows, "direction", light, exponent).filter(|row| row.way == form);
+            let points = cells.filter_map(|row| Some([row.numbers as f64, row.error.interpolation()?, 0.0]));
+            series.push(Series {
+                name: format!("{form}, n = {exponent}"),
+                points: points.collect(),
+                line: true,
+            });
+        }
+    }
+    Figure {
+        title: &format!("Error of interpolating over directions, light: {}", LIGHTS[light]),
+        axes: ["numbers per node", "rms, % of the largest luminance"],
+        log: [true, true],
+        series: &series,
+    }
+    .svg()
+}
+
+fn by_spacing(rows: &[Row], light: usize) -> String {
+    let series: Vec<Series> = EXPONENTS
+        .into_iter()
+        .map(|exponent| {
+            let x = |row: &Row| row.spacing_m * f64::from(exponent).sqrt() / HEIGHT_M;
+            let points = of(rows, "position", light, exponent)
+                .filter_map(|row| Some([x(row), row.error.interpolation()?, 0.0]));
+            Series { name: format!("n = {exponent}"), points: points.collect(), line: true }
+        })
+        .collect();
+    Figure {
+        title: &format!("Error of interpolating between nodes, light: {}", LIGHTS[light]),
+        axes: ["spacing · √n / d", "rms, % of the largest luminance"],
+        log: [true, true],
+        series: &series,
+    }
+    .svg()
+}

@@ -14,7 +14,7 @@ use gershun::query::{Demand, Ray};
 use gershun::rng::Rng;
 use gershun::scene::Scene;
 use gershun::solve::nodal::{
-    NodalEffort, Splitting, StoredLight, nodal_field, nodal_luminance, reflected, scattering_nodes,
+    NodalEffort, NodeRays, Splitting, StoredLight, nodal_field, nodal_luminance, reflected, scattering_nodes,
 };
 use gershun::solve::{Effort, Method, Prepared, prepare};
 use gershun::sphere;
@@ -60,7 +60,7 @@ fn floor_field(prepared: &Prepared, effort: &NodalEffort, spacing_m: f64) -> Nod
 fn a_furnace_shows_the_albedo_in_every_form() {
     let angles_deg = [8.0f64, 33.0, 57.0, 74.0];
     for form in [Form::ThetaPhi { steps: 12 }, Form::Harmonics { order: 8 }, Form::Octahedral { size: 14 }] {
-        let effort = NodalEffort { form, blocks: 64, rays: 8, ..NodalEffort::default() };
+        let effort = NodalEffort { form, blocks: 64, rays: NodeRays::walked(8), ..NodalEffort::default() };
         let look = |scene: &Scene, light: StoredLight| -> Vec<Interpolated> {
             let field = floor_field(&prepared(scene), &NodalEffort { light, ..effort }, 2.0);
             let spot = spot(scene, DVec3::new(0.7, 0.9, 0.0), DVec3::new(0.7, 0.9, 0.5));
@@ -116,7 +116,8 @@ fn nodes_hold_what_lines_of_sight_see() {
         let local = sphere::frame(DVec3::Z).transpose() * to_eye;
         let values: Vec<f64> = (0..blocks)
             .map(|block| {
-                let found = reflected(&prepared, &spot, local, 64, &mut Rng::new(3, 1 + block, 0));
+                let found =
+                    reflected(&prepared, &spot, local, NodeRays::walked(64), &mut Rng::new(3, 1 + block, 0));
                 found.direct[channel] + found.indirect[channel]
             })
             .collect();
@@ -159,7 +160,7 @@ fn direct_light_may_be_stored_or_added() {
             form: Form::Harmonics { order: 12 },
             light: kept,
             blocks: 8,
-            rays: 32,
+            rays: NodeRays::walked(32),
             ..NodalEffort::default()
         };
         let field =
@@ -200,7 +201,7 @@ fn nodes_at_a_concave_edge_hold_its_limit() {
         let middle = spot(&scene, DVec3::new(0.0005, 2.0, 0.0), DVec3::new(0.0005, 2.0, 0.5));
         let near = nodes.around(middle.triangle, middle.barycentric).expect("the floor has nodes");
         let near: Vec<usize> = near.iter().map(|(node, _)| *node).collect();
-        let effort = NodalEffort { blocks: 64, rays: 64, ..NodalEffort::default() };
+        let effort = NodalEffort { blocks: 64, rays: NodeRays::walked(64), ..NodalEffort::default() };
         let field = nodal_field(&prepared, &effort, nodes, |node, front| front && near.contains(&node));
         let found = field.look(&middle, DVec3::Z).expect("its nodes are solved");
         (found.luminance[0], found.se[0])
@@ -258,7 +259,7 @@ fn the_field_of_a_box_room_is_that_of_exact_radiosity() {
     // Illuminance by the field at every place: direct light is added exactly, as the lamp is a point.
     let found = |scene: &Scene, spacing_m: f64| -> Vec<(f64, f64)> {
         let prepared = prepared(scene);
-        let effort = NodalEffort { blocks: 64, rays: 64, ..NodalEffort::default() };
+        let effort = NodalEffort { blocks: 64, rays: NodeRays::walked(64), ..NodalEffort::default() };
         let nodes = scattering_nodes(scene, spacing_m, 1e-3);
         let field = nodal_field(&prepared, &effort, nodes, |_, front| front);
         references
@@ -298,8 +299,13 @@ fn cells_are_split_where_light_bends() {
     let scene = Scene::new(room(DVec3::new(4.0, 4.0, 3.0)), materials, vec![lamp]).expect("a valid scene");
     let prepared = prepared(&scene);
     let solve = |splitting: Option<Splitting>, spacing_m: f64| {
-        let effort =
-            NodalEffort { light: StoredLight::All, blocks: 2, rays: 1, splitting, ..NodalEffort::default() };
+        let effort = NodalEffort {
+            light: StoredLight::All,
+            blocks: 2,
+            rays: NodeRays::walked(1),
+            splitting,
+            ..NodalEffort::default()
+        };
         floor_field(&prepared, &effort, spacing_m)
     };
     // L = ρ/π · I h/d³ of a point lamp over a floor in a black room.
@@ -338,7 +344,7 @@ fn cells_are_split_where_light_bends() {
     let scene = furnace(0.5);
     let effort = NodalEffort {
         blocks: 64,
-        rays: 4,
+        rays: NodeRays::walked(4),
         form: Form::Harmonics { order: 4 },
         splitting: Some(Splitting { tolerance_cd_m2: 0.0, deepest: 2 }),
         ..NodalEffort::default()
@@ -355,8 +361,12 @@ fn cells_are_split_where_light_bends() {
 fn a_node_is_the_same_whatever_else_is_asked() {
     let scene = lit(0.3);
     let prepared = prepared(&scene);
-    let effort =
-        NodalEffort { form: Form::Harmonics { order: 2 }, blocks: 2, rays: 2, ..NodalEffort::default() };
+    let effort = NodalEffort {
+        form: Form::Harmonics { order: 2 },
+        blocks: 2,
+        rays: NodeRays::walked(2),
+        ..NodalEffort::default()
+    };
     let nodes = Nodes::new(&scene.mesh, 1.0, 1e-3, |triangle| triangle < 2);
     let all = nodal_field(&prepared, &effort, nodes.clone(), |_, front| front);
     let some = nodal_field(&prepared, &effort, nodes, |node, front| front && node % 3 == 1);

@@ -6,7 +6,7 @@ use gershun::material::{Lobe, Phong};
 use gershun::query::Demand;
 use gershun::rng::Rng;
 use gershun::scene::Scene;
-use gershun::solve::nodal::reflected;
+use gershun::solve::nodal::{NodeRays, reflected};
 use gershun::solve::{Effort, Method, Prepared, prepare};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -118,8 +118,8 @@ pub fn looks(scene: &Scene, exponent: u32, places: u64, directions: u64) -> Vec<
     all
 }
 
-/// Luminance at a spot by `rays` rays for the diffuse part and for the lobe.
-pub fn seen(prepared: &Prepared, spot: &Spot, to_eye: DVec3, rays: u32, rng: &mut Rng) -> Lights {
+/// Luminance at a spot by one estimate.
+pub fn seen(prepared: &Prepared, spot: &Spot, to_eye: DVec3, rays: NodeRays, rng: &mut Rng) -> Lights {
     let found = reflected(prepared, spot, to_eye, rays, rng);
     [found.direct[0] + found.indirect[0], found.indirect[0]]
 }
@@ -134,7 +134,7 @@ pub fn reference(scene: &Scene, looks: &[Look]) -> Reference {
             let blocks: Vec<Lights> = (0..BLOCKS)
                 .map(|block| {
                     let mut rng = Rng::new(99, 1 + block, number as u64);
-                    seen(&prepared, &look.spot, look.to_eye, RAYS, &mut rng)
+                    seen(&prepared, &look.spot, look.to_eye, NodeRays::walked(RAYS), &mut rng)
                 })
                 .collect();
             let of = |light: usize, blocks: &[Lights]| {

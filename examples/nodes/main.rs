@@ -22,32 +22,32 @@ use common::cpu_seconds;
 use looks::Error;
 
 /// Exponents of the floor's lobe.
-pub const EXPONENTS: [u32; 5] = [1, 10, 30, 100, 1000];
+const EXPONENTS: [u32; 5] = [1, 10, 30, 100, 1000];
 /// Which light, as [`looks::Lights`] has it.
-pub const LIGHTS: [&str; 2] = ["all", "indirect"];
+const LIGHTS: [&str; 2] = ["all", "indirect"];
 
 /// One measured configuration.
-pub struct Row {
-    pub part: &'static str,
-    pub light: usize,
+struct Row {
+    part: &'static str,
+    light: usize,
     /// None: a floor without lobe.
-    pub exponent: Option<u32>,
-    pub way: String,
+    exponent: Option<u32>,
+    way: String,
     /// Numbers per node and channel; of rays: per look.
-    pub numbers: usize,
-    pub spacing_m: f64,
+    numbers: usize,
+    spacing_m: f64,
     /// Nodes on the whole floor.
-    pub nodes: usize,
+    nodes: usize,
     /// Rays by which each number was estimated.
-    pub rays: u32,
-    pub error: Error,
+    rays: u32,
+    error: Error,
     /// CPU for the whole floor's nodes, or of one look where nothing is stored, s.
-    pub cpu_s: f64,
+    cpu_s: f64,
 }
 
 impl Row {
     /// Memory of the whole floor's numbers, one channel, bytes.
-    pub fn bytes(&self) -> usize {
+    fn bytes(&self) -> usize {
         8 * self.numbers * self.nodes
     }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::figure::{Figure, Series};
 use crate::looks::HEIGHT_M;
+use crate::today::WAYS;
 use crate::{EXPONENTS, LIGHTS, Row};
 
 const WORDS: &str = include_str!("words.md");
@@ -131,25 +132,35 @@ fn crossing(rows: &[Row], light: usize, exponent: u32, percent: f64) -> Option<f
     })
 }
 
+/// The law error = k (s √n / d)²: means of k over spacings of which the bracket is between these.
+const FITTED: std::ops::Range<f64> = 0.2..1.2;
+
 fn law(rows: &[Row]) -> String {
     let mut text = String::new();
     for light in 0..2 {
         for exponent in EXPONENTS {
-            let root = f64::from(exponent).sqrt();
-            let cell = |percent: f64| {
-                crossing(rows, light, exponent, percent).map_or("– | –".into(), |spacing_m| {
-                    format!("{spacing_m:.2} m | {:.2}", spacing_m * root / HEIGHT_M)
-                })
+            let x = |spacing_m: f64| spacing_m * f64::from(exponent).sqrt() / HEIGHT_M;
+            let spacing = crossing(rows, light, exponent, 1.0);
+            let spacing = spacing.map_or("– | –".into(), |m| format!("{m:.2} m | {:.2}", x(m)));
+            let fitted = || {
+                let within = of(rows, "position", light, exponent)
+                    .filter(|row| FITTED.contains(&x(row.spacing_m)) && row.error.interpolation().is_some());
+                within.map(|row| (row, x(row.spacing_m).powi(2)))
             };
-            let _ = writeln!(text, "| {} | {exponent} | {} | {} |", LIGHTS[light], cell(1.0), cell(3.0));
+            let count = fitted().count() as f64;
+            let rms: f64 = fitted().filter_map(|(row, x2)| Some(row.error.interpolation()? / x2)).sum();
+            let largest: f64 = fitted().map(|(row, x2)| row.error.largest / x2).sum();
+            let shown = |sum: f64| if count > 0.0 { format!("{:.1}", sum / count) } else { "–".into() };
+            let (rms, largest) = (shown(rms), shown(largest));
+            let _ = writeln!(text, "| {} | {exponent} | {spacing} | {rms} | {largest} |", LIGHTS[light]);
         }
     }
     text
 }
 
 /// Rays at which patches and lobe rays err as much, and their CPU time, straight in logarithms.
-fn equal(rows: &[Row], light: usize, exponent: u32, rms: f64) -> Option<(f64, f64)> {
-    let list: Vec<&Row> = of(rows, "today", light, exponent).collect();
+fn equal(rows: &[Row], way: &str, light: usize, exponent: u32, rms: f64) -> Option<(f64, f64)> {
+    let list: Vec<&Row> = of(rows, "today", light, exponent).filter(|row| row.way == way).collect();
     let between = list.windows(2).find(|pair| pair[0].error.rms >= rms && pair[1].error.rms < rms);
     let [few, many] = between.map(|pair| [pair[0], pair[1]])?;
     let share = (rms / few.error.rms).ln() / (many.error.rms / few.error.rms).ln();
@@ -161,17 +172,16 @@ fn whole(rows: &[Row]) -> String {
     let mut text = String::new();
     for exponent in EXPONENTS {
         for row in rows.iter().filter(|row| row.part == "whole" && row.exponent == Some(exponent)) {
-            let (rays, looks) = match equal(rows, row.light, exponent, row.error.rms) {
-                Some((rays, cpu_s)) => (format!("{rays:.0}"), format!("{:.0}", 1e-3 * row.cpu_s / cpu_s)),
-                None if of(rows, "today", row.light, exponent)
-                    .any(|today| today.error.rms < row.error.rms) =>
-                {
-                    (
-                        "< 1".into(),
-                        format!("> {:.0}", 1e-3 * row.cpu_s / first_cpu_s(rows, row.light, exponent)),
-                    )
+            // Like with like: fields that patches spoil against rays that they spoil.
+            let rival = WAYS[usize::from(row.way.ends_with("as stored"))];
+            let equal = equal(rows, rival, row.light, exponent, row.error.rms);
+            let (rays, looks) = match equal {
+                Some((rays, cpu_s)) => (format!("{rays:.0}"), format!("{:.1}", 1e-3 * row.cpu_s / cpu_s)),
+                None => {
+                    let best = of(rows, "today", row.light, exponent).filter(|row| row.way == rival);
+                    let best = best.map(|row| row.error.rms).fold(f64::INFINITY, f64::min);
+                    (if best < row.error.rms { "fewest".into() } else { "more".into() }, "–".into())
                 }
-                None => ("> 256".into(), "–".into()),
             };
             let _ = writeln!(
                 text,
@@ -188,10 +198,6 @@ fn whole(rows: &[Row]) -> String {
         }
     }
     text
-}
-
-fn first_cpu_s(rows: &[Row], light: usize, exponent: u32) -> f64 {
-    of(rows, "today", light, exponent).map(|row| row.cpu_s).fold(f64::INFINITY, f64::min)
 }
 
 fn meshes(rows: &[Row]) -> String {
@@ -217,16 +223,15 @@ fn meshes(rows: &[Row]) -> String {
 
 fn today(rows: &[Row]) -> String {
     let mut text = String::new();
-    for light in 0..2 {
-        for exponent in EXPONENTS {
-            let cells = of(rows, "today", light, exponent)
-                .map(|row| format!("{:.2} ({:.0} µs)", row.error.rms, 1e6 * row.cpu_s));
-            let _ = writeln!(
-                text,
-                "| {} | {exponent} | {} |",
-                LIGHTS[light],
-                cells.collect::<Vec<String>>().join(" | ")
-            );
+    for way in WAYS {
+        for light in 0..2 {
+            for exponent in EXPONENTS {
+                let cells = of(rows, "today", light, exponent)
+                    .filter(|row| row.way == way)
+                    .map(|row| format!("{}: {:.2}, {:.0} µs", row.rays, row.error.rms, 1e6 * row.cpu_s));
+                let cells = cells.collect::<Vec<String>>().join(" | ");
+                let _ = writeln!(text, "| {way} | {} | {exponent} | {cells} |", LIGHTS[light]);
+            }
         }
     }
     text

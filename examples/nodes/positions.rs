@@ -5,6 +5,7 @@ use gershun::field::nodal::Spot;
 use gershun::field::nodes::Nodes;
 use gershun::rng::Rng;
 use gershun::scene::Scene;
+use gershun::solve::nodal::NodeRays;
 use rayon::prelude::*;
 
 use crate::Row;
@@ -36,7 +37,8 @@ pub fn measure(exponent: u32, scene: &Scene, looks: &[Look], reference: &Referen
                     let spot = Spot { triangle, barycentric, front: look.spot.front };
                     let stream = (1 + replica + 2 * number) as u64;
                     let mut rng = Rng::new(21, stream, ((index as u64) << 32) + node as u64);
-                    let lights = seen(&replicas[replica], &spot, look.to_eye, RAYS, &mut rng);
+                    let lights =
+                        seen(&replicas[replica], &spot, look.to_eye, NodeRays::walked(RAYS), &mut rng);
                     (0..2).for_each(|light| sum[light] += weight * lights[light]);
                 }
                 sum

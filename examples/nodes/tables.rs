@@ -5,7 +5,7 @@ use gershun::field::nodal::{NodalField, Stored};
 use gershun::rng::Rng;
 use gershun::scene::Scene;
 use gershun::solve::Prepared;
-use gershun::solve::nodal::{NodalEffort, StoredLight, nodal_field, nodal_luminance};
+use gershun::solve::nodal::{NodalEffort, NodeRays, StoredLight, nodal_field, nodal_luminance};
 use rayon::prelude::*;
 
 use crate::Row;
@@ -64,7 +64,13 @@ fn forms([steps, order, size]: [usize; 3]) -> Vec<Form> {
 }
 
 /// A field of the nodes about the looks only, with direct and indirect light apart.
-fn about(prepared: &Prepared, looks: &[Look], spacing_m: f64, form: Form, rays: u32) -> (NodalField, usize) {
+fn about(
+    prepared: &Prepared,
+    looks: &[Look],
+    spacing_m: f64,
+    form: Form,
+    rays: NodeRays,
+) -> (NodalField, usize) {
     let nodes = floor_nodes(prepared.emitters().scene, spacing_m);
     let mut near = vec![false; nodes.len()];
     for look in looks {
@@ -93,7 +99,7 @@ pub fn directions(exponent: u32, scene: &Scene, rows: &mut Vec<Row>) {
     let (limits, rays) = limits(exponent);
     for form in forms(limits) {
         let before = cpu_seconds();
-        let fields = [0, 1].map(|k| about(&replicas[k], &looks, CLOSE_M, form, rays));
+        let fields = [0, 1].map(|k| about(&replicas[k], &looks, CLOSE_M, form, NodeRays::walked(rays)));
         let (asked, nodes) = (fields[0].1, fields[0].0.nodes.len());
         let cpu_s = (cpu_seconds() - before) / (2 * asked) as f64 * nodes as f64;
         let found = fields.map(|(field, _)| shown(&field, &looks));
@@ -121,7 +127,9 @@ pub fn whole(exponent: u32, scene: &Scene, looks: &[Look], reference: &Reference
     let reference = reference.first(looks.len());
     let replicas = [1, 2].map(|seed| prepared(scene, 16, seed));
     let (form, rays) = (chosen(exponent), limits(exponent).1);
-    for spacing_m in WHOLE_M {
+    let quick = |spacing_m: f64| (spacing_m, NodeRays { gather: 8 * rays, walks: 0 });
+    let walked = WHOLE_M.map(|spacing_m| (spacing_m, NodeRays::walked(rays)));
+    for (spacing_m, rays) in walked.into_iter().chain(WHOLE_M.map(quick)) {
         let before = cpu_seconds();
         let fields = [0, 1].map(|k| about(&replicas[k], looks, spacing_m, form, rays));
         let (asked, nodes) = (fields[0].1, fields[0].0.nodes.len());
@@ -133,11 +141,11 @@ pub fn whole(exponent: u32, scene: &Scene, looks: &[Look], reference: &Reference
                 part: "whole",
                 light,
                 exponent: Some(exponent),
-                way: way.into(),
+                way: if rays.walks > 0 { way.into() } else { format!("{way}; patches as stored") },
                 numbers: form.numbers() + 1,
                 spacing_m,
                 nodes,
-                rays: 2 * rays,
+                rays: 2 * rays.gather,
                 error,
                 cpu_s,
             });

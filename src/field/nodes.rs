@@ -24,7 +24,7 @@ const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 pub struct Nodes {
     triangles: Vec<Divided>,
     cells: Vec<Cell>,
-    nodes: Vec<Node>,
+    places: Vec<Node>,
     numbered: BTreeMap<Node, u32>,
 }
 
@@ -61,7 +61,7 @@ impl Nodes {
         let mut nodes = Self {
             triangles: Vec::with_capacity(mesh.triangles.len()),
             cells: Vec::new(),
-            nodes: Vec::new(),
+            places: Vec::new(),
             numbered: BTreeMap::new(),
         };
         for index in 0..mesh.triangles.len() {
@@ -89,27 +89,27 @@ impl Nodes {
     /// The number of the node at a place of a triangle's lattice, new if need be.
     fn node(&mut self, triangle: u32, lattice: [f64; 2]) -> u32 {
         let node = Node { triangle, lattice: lattice.map(|step| step.round() as u32) };
-        let next = self.nodes.len() as u32;
+        let next = self.places.len() as u32;
         let number = *self.numbered.entry(node).or_insert(next);
         if number == next {
-            self.nodes.push(node);
+            self.places.push(node);
         }
         number
     }
 
     /// Number of nodes; each has two sides.
     pub fn len(&self) -> usize {
-        self.nodes.len()
+        self.places.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
+        self.places.is_empty()
     }
 
     /// Triangle of a node, and its weights of the second and third corner.
     pub fn place(&self, node: usize) -> (u32, [f64; 2]) {
-        let Node { triangle, lattice } = self.nodes[node];
+        let Node { triangle, lattice } = self.places[node];
         let Divided { divisions, margins, .. } = self.triangles[triangle as usize];
         let rest = 1.0 - margins.iter().sum::<f64>();
         let share = |axis: usize| {
@@ -157,7 +157,7 @@ impl Nodes {
         let Cell::Whole(corners) = self.cells[cell] else { return Vec::new() };
         let mut all = Vec::with_capacity(3);
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-            let (one, other) = (self.nodes[corners[a] as usize], self.nodes[corners[b] as usize]);
+            let (one, other) = (self.places[corners[a] as usize], self.places[corners[b] as usize]);
             let lattice =
                 [0, 1].map(|axis| 0.5 * (f64::from(one.lattice[axis]) + f64::from(other.lattice[axis])));
             let middle = self.node(one.triangle, lattice);
@@ -169,7 +169,7 @@ impl Nodes {
     /// Splits a cell in four; the children's numbers.
     pub fn split(&mut self, cell: usize) -> Vec<usize> {
         let Cell::Whole(corners) = self.cells[cell] else { return Vec::new() };
-        let [a, b, c] = corners.map(|corner| self.nodes[corner as usize]);
+        let [a, b, c] = corners.map(|corner| self.places[corner as usize]);
         let first = self.cells.len();
         for part in 0..4 {
             let nodes = CORNERS.map(|corner| {
@@ -188,10 +188,12 @@ impl Nodes {
 
     /// Drops nodes that no whole cell has; the former numbers of those that are left.
     pub fn drop_unused(&mut self) -> Vec<usize> {
-        let mut used = vec![false; self.nodes.len()];
+        let mut used = vec![false; self.places.len()];
         for cell in &self.cells {
             if let Cell::Whole(corners) = cell {
-                corners.iter().for_each(|&corner| used[corner as usize] = true);
+                for &corner in corners {
+                    used[corner as usize] = true;
+                }
             }
         }
         let kept: Vec<usize> = (0..used.len()).filter(|&node| used[node]).collect();
@@ -204,8 +206,8 @@ impl Nodes {
                 *corners = corners.map(|corner| renumbered[corner as usize]);
             }
         }
-        self.nodes = kept.iter().map(|&former| self.nodes[former]).collect();
-        self.numbered = self.nodes.iter().enumerate().map(|(k, node)| (*node, k as u32)).collect();
+        self.places = kept.iter().map(|&former| self.places[former]).collect();
+        self.numbered = self.places.iter().enumerate().map(|(k, node)| (*node, k as u32)).collect();
         kept
     }
 }

@@ -26,8 +26,27 @@ const STREAM: u64 = u64::MAX - 7;
 /// Tables are sampled at least this far above the horizon (cos θ): *at* it lobes are dark, their limit is not.
 const HORIZON: f64 = 1e-3;
 
-/// One of so many rays is walked on from.
-const RAYS_PER_WALK: u32 = 2;
+/// Rays of one estimate, for the diffuse part and for the lobe each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NodeRays {
+    /// Rays into the field of patches, at least 1.
+    pub gather: u32,
+    /// Those of them that are walked on from, at most `gather`; without any the errors of the patches stay.
+    pub walks: u32,
+}
+
+impl NodeRays {
+    /// Every ray walked on from.
+    pub fn walked(rays: u32) -> Self {
+        Self { gather: rays, walks: rays }
+    }
+
+    /// Shares of ray number `ray` in what is gathered and in what walks add.
+    fn shares(self, ray: u32) -> [f64; 2] {
+        let walked = if ray < self.walks { 1.0 / f64::from(self.walks) } else { 0.0 };
+        [1.0 / f64::from(self.gather), walked]
+    }
+}
 
 /// Which light the nodes store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +69,7 @@ pub struct NodalEffort {
     /// Independent estimates of every number, at least 2; their scatter gives its standard error.
     pub blocks: u32,
     /// Rays of each estimate.
-    pub rays: u32,
+    pub rays: NodeRays,
     /// Whether and how cells are split.
     pub splitting: Option<Splitting>,
 }
@@ -70,7 +89,7 @@ impl Default for NodalEffort {
             form: Form::Harmonics { order: 8 },
             light: StoredLight::Indirect,
             blocks: 8,
-            rays: 16,
+            rays: NodeRays { gather: 16, walks: 8 },
             splitting: None,
         }
     }
@@ -193,8 +212,14 @@ fn stored(
 }
 
 /// Reflected luminance of a spot towards `to_eye` (unit, local to its side), diffuse and glossy together: one
-/// unbiased estimate by `rays` rays for each. It is what a field without steps in place and direction holds.
-pub fn reflected(prepared: &Prepared, spot: &Spot, to_eye: DVec3, rays: u32, rng: &mut Rng) -> Reflected {
+/// estimate, unbiased with walks. It is what a field without steps in place and direction holds.
+pub fn reflected(
+    prepared: &Prepared,
+    spot: &Spot,
+    to_eye: DVec3,
+    rays: NodeRays,
+    rng: &mut Rng,
+) -> Reflected {
     let mut desk = Desk::new(prepared.scene.channels.len());
     let mut all = diffusely(prepared, spot, rays, rng, &mut desk);
     if prepared.scene.bsdf(spot.triangle).lobe().is_some() {
@@ -225,7 +250,7 @@ fn landing(prepared: &Prepared, spot: &Spot, to_eye: DVec3) -> Landing {
 }
 
 /// Diffuse luminance: L = (ρ + τ)/π ∫ L_in |cos| dω over both sides in proportion to ρ and τ.
-fn diffusely(prepared: &Prepared, spot: &Spot, rays: u32, rng: &mut Rng, desk: &mut Desk) -> Reflected {
+fn diffusely(prepared: &Prepared, spot: &Spot, rays: NodeRays, rng: &mut Rng, desk: &mut Desk) -> Reflected {
     let mut found = Reflected::dark(desk.seen.len());
     let here = landing(prepared, spot, DVec3::Z);
     let (reflectance, transmittance) = prepared.scene.bsdf(spot.triangle).diffuse();
@@ -234,37 +259,36 @@ fn diffusely(prepared: &Prepared, spot: &Spot, rays: u32, rng: &mut Rng, desk: &
         return found;
     }
     let sequence = Stratified::new(rng);
-    for ray in 0..rays {
-        add_diffuse_lamps(prepared, &here, 1.0 / f64::from(rays), rng, desk, &mut found.direct);
+    for ray in 0..rays.gather {
+        add_diffuse_lamps(prepared, &here, 1.0 / f64::from(rays.gather), rng, desk, &mut found.direct);
         let [u, v, side] = sequence.point(ray, rng);
         let facing = if side * albedo < reflectance { here.normal } else { -here.normal };
         let direction = sphere::frame(facing) * sphere::cosine_hemisphere([u, v]);
         let origin = here.origin(prepared.scene, here.normal.dot(direction) > 0.0);
-        add_arriving(prepared, (origin, direction), [ray, rays], albedo, rng, desk, &mut found.indirect);
+        let shares = rays.shares(ray).map(|share| albedo * share);
+        add_arriving(prepared, (origin, direction), shares, rng, desk, &mut found.indirect);
     }
     found
 }
 
-/// Adds the luminance that arrives along ray number `ray` of `rays`, times `weight`: what is stored where it ends,
-/// and by the first few of them walks that mend it.
+/// Adds the luminance that arrives along a ray: what is stored where it ends times the first share and, unless that
+/// is none, what a walk from there adds times the second.
 fn add_arriving(
     prepared: &Prepared,
     (origin, direction): (DVec3, DVec3),
-    [ray, rays]: [u32; 2],
-    weight: f64,
+    [gathered, walked]: [f64; 2],
     rng: &mut Rng,
     desk: &mut Desk,
     out: &mut [f64],
 ) {
     see(prepared, origin, direction, ANALOG, rng, desk);
     for (sum, seen) in out.iter_mut().zip(&desk.seen) {
-        *sum += weight / f64::from(rays) * seen;
+        *sum += gathered * seen;
     }
-    let walks = rays.div_ceil(RAYS_PER_WALK);
-    if ray < walks {
+    if walked > 0.0 {
         walk(prepared, rng, desk);
         for (sum, residual) in out.iter_mut().zip(&desk.residual) {
-            *sum += weight / f64::from(walks) * residual;
+            *sum += walked * residual;
         }
     }
 }
@@ -292,19 +316,20 @@ fn by_lobe(
     prepared: &Prepared,
     spot: &Spot,
     to_eye: DVec3,
-    rays: u32,
+    rays: NodeRays,
     rng: &mut Rng,
     desk: &mut Desk,
 ) -> Reflected {
     let mut found = Reflected::dark(desk.seen.len());
     let here = landing(prepared, spot, to_eye);
     let sequence = Stratified::new(rng);
-    let share = 1.0 / f64::from(rays);
-    for ray in 0..rays {
+    let share = 1.0 / f64::from(rays.gather);
+    for ray in 0..rays.gather {
         let point = sequence.point(ray, rng);
         let onward = add_glossy_lamps(prepared, &here, point, share, rng, desk, &mut found.direct);
         let Some((origin, direction, weight)) = onward else { continue };
-        add_arriving(prepared, (origin, direction), [ray, rays], weight, rng, desk, &mut found.indirect);
+        let shares = rays.shares(ray).map(|share| weight * share);
+        add_arriving(prepared, (origin, direction), shares, rng, desk, &mut found.indirect);
     }
     found
 }

@@ -52,7 +52,7 @@ fn on(exponent: Option<u32>, ways: &[Way], [blocks, rays]: [u32; 2], rows: &mut 
             let before = cpu_seconds();
             let fields = [1, 2].map(|seed| solved(&scene, &effort, spacing_m, seed));
             let cpu_s = 0.5 * (cpu_seconds() - before);
-            let nodes = (fields[0].nodes.len() + fields[1].nodes.len()) / 2;
+            let nodes = usize::midpoint(fields[0].nodes.len(), fields[1].nodes.len());
             let found = fields.map(|field| shown(&field, &looks, light));
             let way = match tolerance_percent {
                 Some(percent) => format!("split, {percent} %"),

@@ -170,14 +170,14 @@ impl Error {
         let count = reference.se.len();
         let (mut square, mut largest, mut known) = (0.0, 0f64, 0.0);
         let mut products = Vec::with_capacity(count);
-        for look in 0..count {
+        for (look, se) in reference.se.iter().enumerate() {
             let truth = reference.mean(look, light);
-            let found = [0, 1].map(|replica| replicas[replica][look][light]);
+            let found = [&replicas[0], &replicas[1]].map(|replica| replica[look][light]);
             square += found.iter().map(|value| (percent * (value - truth)).powi(2)).sum::<f64>() / 2.0;
             largest = largest.max(percent * (0.5 * (found[0] + found[1]) - truth).abs());
             let apart = [0, 1].map(|k| percent * (found[k] - reference.halves[k][look][light]));
             products.push(apart[0] * apart[1]);
-            known += (percent * reference.se[look][light]).powi(2);
+            known += (percent * se[light]).powi(2);
         }
         let mean = Estimate::from_blocks(&products);
         Self {

@@ -28,9 +28,9 @@ pub fn write(rows: &[Row], largest: &[(u32, [f64; 2])]) -> Result<(), Box<dyn Fa
     ];
     let text = pages.iter().fold(WORDS.to_owned(), |text, (key, table)| text.replace(key, table.trim_end()));
     std::fs::write(folder.join("README.md"), text)?;
-    for light in 0..2 {
-        std::fs::write(folder.join(format!("directions-{}.svg", LIGHTS[light])), by_directions(rows, light))?;
-        std::fs::write(folder.join(format!("law-{}.svg", LIGHTS[light])), by_spacing(rows, light))?;
+    for (light, named) in LIGHTS.into_iter().enumerate() {
+        std::fs::write(folder.join(format!("directions-{named}.svg")), by_directions(rows, light))?;
+        std::fs::write(folder.join(format!("law-{named}.svg")), by_spacing(rows, light))?;
     }
     for (key, table) in pages {
         println!("{key}\n{table}");
@@ -87,9 +87,9 @@ fn of<'r>(rows: &'r [Row], part: &'r str, light: usize, exponent: u32) -> impl I
 /// Interpolation error of every size of every form.
 fn directions(rows: &[Row]) -> String {
     let mut text = String::new();
-    for light in 0..2 {
+    for (light, named) in LIGHTS.into_iter().enumerate() {
         for exponent in EXPONENTS {
-            let _ = write!(text, "| {} | {exponent} |", LIGHTS[light]);
+            let _ = write!(text, "| {named} | {exponent} |");
             for form in FORMS {
                 let cells = of(rows, "direction", light, exponent).filter(|row| row.way == form);
                 let list: Vec<String> =
@@ -104,15 +104,11 @@ fn directions(rows: &[Row]) -> String {
 
 fn positions(rows: &[Row]) -> String {
     let mut text = String::new();
-    for light in 0..2 {
+    for (light, named) in LIGHTS.into_iter().enumerate() {
         for exponent in EXPONENTS {
             let cells = of(rows, "position", light, exponent).map(|row| row.error.interpolation_text());
-            let _ = writeln!(
-                text,
-                "| {} | {exponent} | {} |",
-                LIGHTS[light],
-                cells.collect::<Vec<String>>().join(" | ")
-            );
+            let _ =
+                writeln!(text, "| {named} | {exponent} | {} |", cells.collect::<Vec<String>>().join(" | "));
         }
     }
     text
@@ -137,7 +133,7 @@ const FITTED: std::ops::Range<f64> = 0.2..1.2;
 
 fn law(rows: &[Row]) -> String {
     let mut text = String::new();
-    for light in 0..2 {
+    for (light, named) in LIGHTS.into_iter().enumerate() {
         for exponent in EXPONENTS {
             let x = |spacing_m: f64| spacing_m * f64::from(exponent).sqrt() / HEIGHT_M;
             let spacing = crossing(rows, light, exponent, 1.0);
@@ -152,7 +148,7 @@ fn law(rows: &[Row]) -> String {
             let largest: f64 = fitted().map(|(row, x2)| row.error.largest / x2).sum();
             let shown = |sum: f64| if count > 0.0 { format!("{:.1}", sum / count) } else { "–".into() };
             let (rms, largest) = (shown(rms), shown(largest));
-            let _ = writeln!(text, "| {} | {exponent} | {spacing} | {rms} | {largest} |", LIGHTS[light]);
+            let _ = writeln!(text, "| {named} | {exponent} | {spacing} | {rms} | {largest} |");
         }
     }
     text
@@ -175,13 +171,12 @@ fn whole(rows: &[Row]) -> String {
             // Like with like: fields that patches spoil against rays that they spoil.
             let rival = WAYS[usize::from(row.way.ends_with("as stored"))];
             let equal = equal(rows, rival, row.light, exponent, row.error.rms);
-            let (rays, looks) = match equal {
-                Some((rays, cpu_s)) => (format!("{rays:.0}"), format!("{:.1}", 1e-3 * row.cpu_s / cpu_s)),
-                None => {
-                    let best = of(rows, "today", row.light, exponent).filter(|row| row.way == rival);
-                    let best = best.map(|row| row.error.rms).fold(f64::INFINITY, f64::min);
-                    (if best < row.error.rms { "fewest".into() } else { "more".into() }, "–".into())
-                }
+            let (rays, looks) = if let Some((rays, cpu_s)) = equal {
+                (format!("{rays:.0}"), format!("{:.1}", 1e-3 * row.cpu_s / cpu_s))
+            } else {
+                let best = of(rows, "today", row.light, exponent).filter(|row| row.way == rival);
+                let best = best.map(|row| row.error.rms).fold(f64::INFINITY, f64::min);
+                (if best < row.error.rms { "fewest".into() } else { "more".into() }, "–".into())
             };
             let _ = writeln!(
                 text,
@@ -224,13 +219,13 @@ fn meshes(rows: &[Row]) -> String {
 fn today(rows: &[Row]) -> String {
     let mut text = String::new();
     for way in WAYS {
-        for light in 0..2 {
+        for (light, named) in LIGHTS.into_iter().enumerate() {
             for exponent in EXPONENTS {
                 let cells = of(rows, "today", light, exponent)
                     .filter(|row| row.way == way)
                     .map(|row| format!("{}: {:.2}, {:.0} µs", row.rays, row.error.rms, 1e6 * row.cpu_s));
                 let cells = cells.collect::<Vec<String>>().join(" | ");
-                let _ = writeln!(text, "| {way} | {} | {exponent} | {cells} |", LIGHTS[light]);
+                let _ = writeln!(text, "| {way} | {named} | {exponent} | {cells} |");
             }
         }
     }

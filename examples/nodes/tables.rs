@@ -37,9 +37,9 @@ fn limits(exponent: u32) -> ([usize; 3], u32) {
     match exponent {
         1 => ([16, 16, 24], 16),
         10 => ([24, 24, 32], 16),
-        30 => ([32, 24, 48], 8),
-        100 => ([48, 32, 64], 4),
-        _ => ([64, 48, 96], 2),
+        30 => ([24, 24, 32], 8),
+        100 => ([32, 32, 48], 4),
+        _ => ([48, 48, 64], 2),
     }
 }
 
@@ -57,9 +57,9 @@ pub fn chosen(exponent: u32) -> Form {
 
 fn forms([steps, order, size]: [usize; 3]) -> Vec<Form> {
     let up_to = |list: &'static [usize], most: usize| list.iter().copied().filter(move |&n| n <= most);
-    let grids = up_to(&[4, 6, 8, 12, 16, 24, 32, 48, 64], steps).map(|steps| Form::ThetaPhi { steps });
+    let grids = up_to(&[4, 6, 8, 12, 16, 24, 32, 48], steps).map(|steps| Form::ThetaPhi { steps });
     let orders = up_to(&[2, 4, 6, 8, 12, 16, 24, 32, 48], order).map(|order| Form::Harmonics { order });
-    let maps = up_to(&[6, 8, 12, 16, 24, 32, 48, 64, 96], size).map(|size| Form::Octahedral { size });
+    let maps = up_to(&[6, 8, 12, 16, 24, 32, 48, 64], size).map(|size| Form::Octahedral { size });
     grids.chain(orders).chain(maps).collect()
 }
 
@@ -75,7 +75,9 @@ fn about(
     let mut near = vec![false; nodes.len()];
     for look in looks {
         let around = nodes.around(look.spot.triangle, look.spot.barycentric).expect("the floor has nodes");
-        around.into_iter().for_each(|(node, _)| near[node] = true);
+        for (node, _) in around {
+            near[node] = true;
+        }
     }
     let effort = NodalEffort { form, light: StoredLight::Apart, blocks: 2, rays, splitting: None };
     let asked = near.iter().filter(|&&near| near).count();
@@ -127,7 +129,7 @@ pub fn whole(exponent: u32, scene: &Scene, looks: &[Look], reference: &Reference
     let reference = reference.first(looks.len());
     let replicas = [1, 2].map(|seed| prepared(scene, 16, seed));
     let (form, rays) = (chosen(exponent), limits(exponent).1);
-    let quick = |spacing_m: f64| (spacing_m, NodeRays { gather: 8 * rays, walks: 0 });
+    let quick = |spacing_m: f64| (spacing_m, NodeRays { gather: 4 * rays, walks: 0 });
     let walked = WHOLE_M.map(|spacing_m| (spacing_m, NodeRays::walked(rays)));
     for (spacing_m, rays) in walked.into_iter().chain(WHOLE_M.map(quick)) {
         let before = cpu_seconds();

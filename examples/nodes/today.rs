@@ -78,7 +78,7 @@ fn timed(
     look: impl Fn(usize, &Look, &mut Rng) -> Lights,
 ) -> ([Vec<Lights>; 2], f64) {
     let before = cpu_seconds();
-    let rounds = u64::from((1024 / rays).clamp(2, 64));
+    let rounds = u64::from((256 / rays).clamp(2, 32));
     let mut found: Vec<Vec<Lights>> = Vec::new();
     for round in 0..rounds {
         let one = |(index, place): (usize, &Look)| {

@@ -12,7 +12,7 @@ use crate::Row;
 use crate::looks::{Error, Lights, Look, Reference, prepared, seen};
 
 /// Distances between nodes, m.
-const SPACINGS_M: [f64; 7] = [2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+const SPACINGS_M: [f64; 6] = [2.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Rays by which a node is solved.
 const RAYS: u32 = 128;
 /// Distance of nodes from the walls, m.

@@ -18,6 +18,8 @@ use crate::today::ray;
 const CLOSE_M: f64 = 1.0 / 128.0;
 /// Distances between nodes of whole fields, m.
 const WHOLE_M: [f64; 3] = [1.0, 0.5, 0.25];
+/// Those that are also solved without walks.
+const QUICK_M: [f64; 2] = [0.5, 0.25];
 /// Whole fields are looked at in so many places.
 const PLACES: usize = 12;
 /// Points on openings of a look at a field that stores indirect light.
@@ -131,7 +133,7 @@ pub fn whole(exponent: u32, scene: &Scene, looks: &[Look], reference: &Reference
     let (form, rays) = (chosen(exponent), limits(exponent).1);
     let quick = |spacing_m: f64| (spacing_m, NodeRays { gather: 4 * rays, walks: 0 });
     let walked = WHOLE_M.map(|spacing_m| (spacing_m, NodeRays::walked(rays)));
-    for (spacing_m, rays) in walked.into_iter().chain(WHOLE_M.map(quick)) {
+    for (spacing_m, rays) in walked.into_iter().chain(QUICK_M.map(quick)) {
         let before = cpu_seconds();
         let fields = [0, 1].map(|k| about(&replicas[k], looks, spacing_m, form, rays));
         let (asked, nodes) = (fields[0].1, fields[0].0.nodes.len());

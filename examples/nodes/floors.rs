@@ -71,6 +71,7 @@ fn on(exponent: Option<u32>, ways: &[Way], [blocks, rays]: [u32; 2], rows: &mut 
                 rays: blocks * rays,
                 error,
                 cpu_s,
+                look_s: 0.0,
             });
         }
     }

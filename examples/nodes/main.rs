@@ -43,6 +43,8 @@ struct Row {
     error: Error,
     /// CPU for the whole floor's nodes, or of one look where nothing is stored, s.
     cpu_s: f64,
+    /// CPU of one look at a field, s; none where it was not measured.
+    look_s: f64,
 }
 
 impl Row {

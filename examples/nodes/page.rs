@@ -65,12 +65,15 @@ fn csv(rows: &[Row]) -> String {
 /// CPU times, which differ from run to run.
 fn effort(rows: &[Row]) -> String {
     let mut text = String::from(
-        "part,light,exponent,way,numbers_per_node_or_rays_per_look,spacing_m,cpu_s_of_floor_or_look\n",
+        "part,light,exponent,way,numbers_per_node_or_rays_per_look,spacing_m,cpu_s_of_floor_or_look,cpu_s_of_look_at_field\n",
     );
     for row in rows.iter().filter(|row| row.cpu_s > 0.0) {
-        let Row { part, light, exponent, way, numbers, spacing_m, cpu_s, .. } = row;
+        let Row { part, light, exponent, way, numbers, spacing_m, cpu_s, look_s, .. } = row;
         let (light, exponent) = (LIGHTS[*light], shown(*exponent));
-        let _ = writeln!(text, "{part},{light},{exponent},\"{way}\",{numbers},{spacing_m},{cpu_s:.3e}");
+        let _ = writeln!(
+            text,
+            "{part},{light},{exponent},\"{way}\",{numbers},{spacing_m},{cpu_s:.3e},{look_s:.3e}"
+        );
     }
     text
 }
@@ -172,7 +175,9 @@ fn whole(rows: &[Row]) -> String {
             let rival = WAYS[usize::from(row.way.ends_with("as stored"))];
             let equal = equal(rows, rival, row.light, exponent, row.error.rms);
             let (rays, looks) = if let Some((rays, cpu_s)) = equal {
-                (format!("{rays:.0}"), format!("{:.1}", 1e-3 * row.cpu_s / cpu_s))
+                let saved_s = cpu_s - row.look_s;
+                let looks = 1e-3 * row.cpu_s / saved_s;
+                (format!("{rays:.0}"), if saved_s > 0.0 { format!("{looks:.1}") } else { "never".into() })
             } else {
                 let best = of(rows, "today", row.light, exponent).filter(|row| row.way == rival);
                 let best = best.map(|row| row.error.rms).fold(f64::INFINITY, f64::min);
@@ -180,7 +185,7 @@ fn whole(rows: &[Row]) -> String {
             };
             let _ = writeln!(
                 text,
-                "| {exponent} | {} | {} | {} | {:.2} | {} | {:.1} | {:.2} MB | {:.0} | {rays} | {looks} |",
+                "| {exponent} | {} | {} | {} | {:.2} | {} | {:.1} | {:.2} MB | {:.0} | {:.0} | {rays} | {looks} |",
                 row.way,
                 row.spacing_m,
                 row.numbers,
@@ -188,7 +193,8 @@ fn whole(rows: &[Row]) -> String {
                 row.error.interpolation_text(),
                 row.error.largest,
                 1e-6 * row.bytes() as f64,
-                row.cpu_s
+                row.cpu_s,
+                1e6 * row.look_s
             );
         }
     }

@@ -58,6 +58,7 @@ pub fn measure(exponent: u32, scene: &Scene, looks: &[Look], reference: &Referen
                 rays: RAYS,
                 error,
                 cpu_s: 0.0,
+                look_s: 0.0,
             });
         }
     }

@@ -22,6 +22,8 @@ const WHOLE_M: [f64; 3] = [1.0, 0.5, 0.25];
 const QUICK_M: [f64; 2] = [0.5, 0.25];
 /// Whole fields are looked at in so many places.
 const PLACES: usize = 12;
+/// Rounds of looks by which their CPU time is measured.
+const ROUNDS: usize = 40;
 /// Points on openings of a look at a field that stores indirect light.
 const SAMPLES: u32 = 16;
 
@@ -119,6 +121,7 @@ pub fn directions(exponent: u32, scene: &Scene, rows: &mut Vec<Row>) {
                 rays: 2 * rays,
                 error: Error::of(&found, &reference, light),
                 cpu_s,
+                look_s: 0.0,
             });
         }
     }
@@ -139,8 +142,11 @@ pub fn whole(exponent: u32, scene: &Scene, looks: &[Look], reference: &Reference
         let (asked, nodes) = (fields[0].1, fields[0].0.nodes.len());
         let cpu_s = (cpu_seconds() - before) / (2 * asked) as f64 * nodes as f64;
         let fields = fields.map(|(field, _)| field);
+        let started = cpu_seconds();
+        (0..ROUNDS).for_each(|_| drop(shown(&fields[0], looks)));
+        let look_s = (cpu_seconds() - started) / (ROUNDS * looks.len()) as f64;
         let found = [0, 1].map(|k| shown(&fields[k], looks));
-        let mut push = |light: usize, way: &str, error: Error| {
+        let mut push = |light: usize, way: &str, error: Error, look_s: f64| {
             rows.push(Row {
                 part: "whole",
                 light,
@@ -152,21 +158,31 @@ pub fn whole(exponent: u32, scene: &Scene, looks: &[Look], reference: &Reference
                 rays: 2 * rays.gather,
                 error,
                 cpu_s,
+                look_s,
             });
         };
-        push(0, "all light in tables", Error::of(&found, &reference, 0));
-        push(1, "indirect light in tables", Error::of(&found, &reference, 1));
-        let mixed = [0, 1].map(|k| {
-            let kept = indirect_of(&fields[k]);
+        push(0, "all light in tables", Error::of(&found, &reference, 0), look_s);
+        push(1, "indirect light in tables", Error::of(&found, &reference, 1), look_s);
+        let kept = [0, 1].map(|k| indirect_of(&fields[k]));
+        let mixed = |k: usize| -> Vec<Lights> {
             let one = |(index, look): (usize, &Look)| {
                 let mut rng = Rng::new(41, 1 + k as u64, index as u64);
                 let light = StoredLight::Indirect;
-                let found = nodal_luminance(&replicas[k], &kept, light, &ray(look), SAMPLES, &mut rng);
+                let found = nodal_luminance(&replicas[k], &kept[k], light, &ray(look), SAMPLES, &mut rng);
                 [found.expect("its nodes are solved")[0], 0.0]
             };
-            looks.iter().enumerate().map(one).collect::<Vec<Lights>>()
-        });
-        push(0, "indirect light in tables, direct light at the look", Error::of(&mixed, &reference, 0));
+            looks.iter().enumerate().map(one).collect()
+        };
+        let started = cpu_seconds();
+        (0..ROUNDS).for_each(|_| drop(mixed(0)));
+        let look_s = (cpu_seconds() - started) / (ROUNDS * looks.len()) as f64;
+        let mixed = [mixed(0), mixed(1)];
+        push(
+            0,
+            "indirect light in tables, direct light at the look",
+            Error::of(&mixed, &reference, 0),
+            look_s,
+        );
     }
 }
 

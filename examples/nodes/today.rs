@@ -68,6 +68,7 @@ fn row(exponent: u32, light: usize, way: &str, rays: u32, error: Error, cpu_s: f
         rays,
         error,
         cpu_s,
+        look_s: 0.0,
     }
 }
 

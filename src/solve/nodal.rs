@@ -3,23 +3,25 @@
 //! directions errs by interpolation beyond that, so nothing here has an interval, and nothing judges: it is
 //! there for the error to be measured. Direct light may be stored, as in the paper, or be left to the look-up.
 
+mod sight;
 mod split;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::answer::{ANALOG, Desk, SIGHT, mirrored_openings, see, straight_openings, walk};
+use super::Prepared;
+use super::answer::{ANALOG, Desk, SIGHT, see, walk};
 use super::lobe::scatter_at;
-use super::look::{Landing, Way, add_direct, add_emission, follow};
-use super::{PARTS, Prepared};
+use super::look::{Landing, Way, add_direct};
 use crate::estimate::Estimate;
 use crate::field::angular::Form;
 use crate::field::nodal::{NodalField, Spot, Stored};
 use crate::field::nodes::Nodes;
-use crate::query::Ray;
 use crate::rng::{Rng, Stratified};
 use crate::scene::Scene;
 use crate::sphere;
+
+pub use sight::nodal_luminance;
 
 /// Stream of what nodes draw; item = side of a node.
 const STREAM: u64 = u64::MAX - 7;
@@ -356,50 +358,4 @@ fn add_glossy_lamps(
         *sum += share * met;
     }
     onward.map(|onward| (onward.origin, onward.direction, onward.weight))
-}
-
-/// Luminance along a ray from the nodal field, cd/m² per channel: mirrors and panes are followed; where only
-/// indirect light is stored, direct light is added by `samples` points on each opening and lobe rays. `None` where
-/// nodes that it needs were not asked for.
-pub fn nodal_luminance(
-    prepared: &Prepared,
-    field: &NodalField,
-    light: StoredLight,
-    ray: &Ray,
-    samples: u32,
-    rng: &mut Rng,
-) -> Option<Vec<f64>> {
-    let scene = prepared.scene;
-    let channels = scene.channels.len();
-    let mut desk = Desk::new(channels);
-    let mut parts = vec![0.0; channels * PARTS];
-    let share = 1.0 / f64::from(samples);
-    straight_openings(prepared, ray, &mut parts);
-    let mut found = vec![0.0; channels];
-    let sequence = Stratified::new(rng);
-    for sample in 0..samples {
-        mirrored_openings(prepared, ray, rng, share, &mut parts);
-        desk.sight.met.fill(0.0);
-        let arrived = follow(&prepared.emitters, ray.point, ray.direction, 1.0, rng, &mut desk.sight);
-        for (sum, met) in found.iter_mut().zip(&desk.sight.met) {
-            *sum += share * met;
-        }
-        let Some(here) = arrived else { continue };
-        add_emission(scene, here.triangle, &mut found, share);
-        let spot = Spot { triangle: here.triangle, barycentric: here.barycentric, front: here.front };
-        let to_eye = sphere::frame(here.normal).transpose() * here.to_eye;
-        // Where direct light has channels of its own they come first: both add up.
-        for (number, stored) in field.look(&spot, to_eye)?.luminance.into_iter().enumerate() {
-            found[number % channels] += share * stored;
-        }
-        if light == StoredLight::Indirect {
-            add_diffuse_lamps(prepared, &here, share, rng, &mut desk, &mut found);
-            let point = sequence.point(sample, rng);
-            add_glossy_lamps(prepared, &here, point, share, rng, &mut desk, &mut found);
-        }
-    }
-    for (sum, parts) in found.iter_mut().zip(parts.chunks(PARTS)) {
-        *sum += parts.iter().sum::<f64>();
-    }
-    Some(found)
 }

@@ -33,7 +33,7 @@ const EDGE_POINTS: u32 = 16;
 /// Lobe rays of gather rays and walks survive as often as their lobe reflects …
 pub(super) const ANALOG: f64 = 1.0;
 /// … but lines of sight follow each lobe down to this weight: a highlight is what they ask for.
-const SIGHT: f64 = 0.02;
+pub(super) const SIGHT: f64 = 0.02;
 
 /// Buffers reused from receiver to receiver.
 pub(super) struct Desk {

@@ -15,6 +15,7 @@ mod highlights;
 mod lobe;
 mod local;
 mod look;
+pub mod nodal;
 mod path;
 pub mod picture;
 mod prepare;

@@ -5,7 +5,7 @@
 //!
 //!     cargo run --release --example directions
 #![allow(clippy::print_stdout, reason = "a study prints")]
-#![allow(clippy::cast_possible_wrap, reason = "exponents and places on small grids")]
+#![allow(clippy::cast_possible_wrap, reason = "exponents are small")]
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -13,12 +13,13 @@ mod common;
 mod figure;
 
 use std::error::Error;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::Path;
 
 use common::{lambert, panel, room};
 use figure::{Figure, Series};
+use gershun::field::angular::Form;
 use gershun::image::{Projection, View};
 use gershun::rng::Rng;
 use gershun::scene::Scene;
@@ -76,165 +77,10 @@ fn direction(theta: f64, phi: f64) -> DVec3 {
     DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
 }
 
-/// The paper's grid: equal steps in θ and φ, bilinear.
-fn theta_phi(truth: &Reflected, steps: usize, tests: &[DVec3]) -> (usize, Vec<f64>) {
-    let around = 4 * steps;
-    let step = FRAC_PI_2 / steps as f64;
-    let nodes: Vec<DVec3> = (0..(steps + 1) * around)
-        .map(|k| direction((k / around) as f64 * step, (k % around) as f64 * step))
-        .collect();
-    let stored = truth.along_all(&nodes);
-    let look = |w: &DVec3| {
-        let theta = w.z.clamp(-1.0, 1.0).acos() / step;
-        let phi = w.y.atan2(w.x).rem_euclid(TAU) / step;
-        let (i, j) = ((theta as usize).min(steps - 1), phi as usize % around);
-        let (u, v) = (theta - i as f64, phi - phi.floor());
-        let at = |i: usize, j: usize| stored[i * around + j % around];
-        (1.0 - u) * ((1.0 - v) * at(i, j) + v * at(i, j + 1))
-            + u * ((1.0 - v) * at(i + 1, j) + v * at(i + 1, j + 1))
-    };
-    (nodes.len(), tests.iter().map(look).collect())
-}
-
-/// Octahedral map of the hemisphere with cubic interpolation (Catmull–Rom).
-fn octahedral(truth: &Reflected, size: usize, tests: &[DVec3]) -> (usize, Vec<f64>) {
-    let place = |k: usize| 2.0 * k as f64 / (size - 1) as f64 - 1.0;
-    let unfold = |u: f64, v: f64| {
-        let (x, y) = (0.5 * (u + v), 0.5 * (u - v));
-        DVec3::new(x, y, 1.0 - x.abs() - y.abs()).normalize()
-    };
-    let nodes: Vec<DVec3> = (0..size * size).map(|k| unfold(place(k % size), place(k / size))).collect();
-    let stored = truth.along_all(&nodes);
-    let weights = |t: f64| {
-        let (t2, t3) = (t * t, t * t * t);
-        [
-            0.5 * (-t3 + 2.0 * t2 - t),
-            0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
-            0.5 * (-3.0 * t3 + 4.0 * t2 + t),
-            0.5 * (t3 - t2),
-        ]
-    };
-    let look = |w: &DVec3| {
-        let p = *w / (w.x.abs() + w.y.abs() + w.z);
-        let on = |t: f64| 0.5 * (t + 1.0) * (size - 1) as f64;
-        let (u, v) = (on(p.x + p.y), on(p.x - p.y));
-        let (i, j) = ((u as usize).min(size - 2), (v as usize).min(size - 2));
-        let (a, b) = (weights(u - i as f64), weights(v - j as f64));
-        // Past an edge the outermost values go on straight.
-        let row = |j: usize| -> f64 {
-            let at = |i: isize| -> f64 {
-                let last = size as isize - 1;
-                let of = |i: isize| stored[j * size + i as usize];
-                if i < 0 {
-                    2.0 * of(0) - of(1)
-                } else if i > last {
-                    2.0 * of(last) - of(last - 1)
-                } else {
-                    of(i)
-                }
-            };
-            (0..4).map(|k| a[k] * at(i as isize + k as isize - 1)).sum()
-        };
-        let line = |j: isize| -> f64 {
-            let last = size as isize - 1;
-            if j < 0 {
-                2.0 * row(0) - row(1)
-            } else if j > last {
-                2.0 * row(size - 1) - row(size - 2)
-            } else {
-                row(j as usize)
-            }
-        };
-        (0..4).map(|k| b[k] * line(j as isize + k as isize - 1)).sum()
-    };
-    (nodes.len(), tests.iter().map(look).collect())
-}
-
-/// Gauss–Legendre nodes and weights on [0, 1].
-fn gauss(n: usize) -> Vec<(f64, f64)> {
-    (0..n)
-        .map(|k| {
-            let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
-            let mut slope = 1.0;
-            for _ in 0..100 {
-                let (mut p, mut before) = (1.0, 0.0);
-                for l in 0..n {
-                    let l = l as f64;
-                    (p, before) = (((2.0 * l + 1.0) * x * p - l * before) / (l + 1.0), p);
-                }
-                slope = n as f64 * (x * p - before) / (x * x - 1.0);
-                let step = p / slope;
-                x -= step;
-                if step.abs() < 1e-15 {
-                    break;
-                }
-            }
-            (0.5 * (x + 1.0), 1.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
-}
-
-/// Real spherical harmonics of even l + m up to `order` at a direction: those that are even about the
-/// surface, by which a function on the hemisphere is continued below it.
-fn harmonics(order: usize, w: DVec3, out: &mut Vec<f64>) {
-    out.clear();
-    let (z, s) = (w.z, (1.0 - w.z * w.z).max(0.0).sqrt());
-    let phi = w.y.atan2(w.x);
-    let mut diagonal = (1.0 / (4.0 * PI)).sqrt();
-    for m in 0..=order {
-        if m > 0 {
-            diagonal *= -((2 * m + 1) as f64 / (2 * m) as f64).sqrt() * s;
-        }
-        let (mut p, mut before) = (diagonal, 0.0);
-        let m2 = (m * m) as f64;
-        for l in m..=order {
-            if l > m {
-                let l2 = (l * l) as f64;
-                let a = ((4.0 * l2 - 1.0) / (l2 - m2)).sqrt();
-                let b = (((l - 1) * (l - 1)) as f64 - m2) / (4.0 * ((l - 1) * (l - 1)) as f64 - 1.0);
-                (p, before) = (a * (z * p - b.max(0.0).sqrt() * before), p);
-            }
-            if (l + m) % 2 == 1 {
-                continue;
-            }
-            if m == 0 {
-                out.push(p);
-            } else {
-                let (sin, cos) = (m as f64 * phi).sin_cos();
-                out.push(std::f64::consts::SQRT_2 * p * cos);
-                out.push(std::f64::consts::SQRT_2 * p * sin);
-            }
-        }
-    }
-}
-
-fn spherical_harmonics(truth: &Reflected, order: usize, tests: &[DVec3]) -> (usize, Vec<f64>) {
-    let (levels, around) = (gauss(order + 2), 2 * order + 4);
-    let mut nodes = Vec::new();
-    for (z, weight) in &levels {
-        for k in 0..around {
-            let phi = TAU * k as f64 / around as f64;
-            let s = (1.0 - z * z).sqrt();
-            // Twice, for the continuation below.
-            nodes.push((DVec3::new(s * phi.cos(), s * phi.sin(), *z), 2.0 * weight * TAU / around as f64));
-        }
-    }
-    let directions: Vec<DVec3> = nodes.iter().map(|(w, _)| *w).collect();
-    let values = truth.along_all(&directions);
-    let mut basis = Vec::new();
-    harmonics(order, DVec3::Z, &mut basis);
-    let mut coefficients = vec![0.0; basis.len()];
-    for ((w, weight), value) in nodes.iter().zip(&values) {
-        harmonics(order, *w, &mut basis);
-        for (coefficient, y) in coefficients.iter_mut().zip(&basis) {
-            *coefficient += weight * value * y;
-        }
-    }
-    let look = |w: &DVec3| {
-        harmonics(order, *w, &mut basis);
-        coefficients.iter().zip(&basis).map(|(c, y)| c * y).sum()
-    };
-    (coefficients.len(), tests.iter().map(look).collect())
+/// The truth stored in one form and looked up: how many numbers, and what is found.
+fn stored(truth: &Reflected, form: Form, tests: &[DVec3]) -> (usize, Vec<f64>) {
+    let numbers = form.store(&truth.along_all(&form.directions()), 1);
+    (numbers.len(), tests.iter().map(|&direction| form.look(&numbers, direction)).collect())
 }
 
 /// Rays drawn by the lobe (density (n + 1)/(2π) cosⁿ) into what is stored without direction.
@@ -330,13 +176,13 @@ fn main() -> Result<(), Box<dyn Error>> {
                 lines.push(Line { light: field.name, exponent, way, numbers, effort, rms, largest });
             };
             for steps in [4, 6, 8, 12, 16, 24, 32, 48, 64, 96] {
-                add("θ–φ grid", 1, theta_phi(&truth, steps, &tests));
+                add("θ–φ grid", 1, stored(&truth, Form::ThetaPhi { steps }, &tests));
             }
             for order in [2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96] {
-                add("spherical harmonics", 1, spherical_harmonics(&truth, order, &tests));
+                add("spherical harmonics", 1, stored(&truth, Form::Harmonics { order }, &tests));
             }
             for size in [6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192] {
-                add("octahedral map", 1, octahedral(&truth, size, &tests));
+                add("octahedral map", 1, stored(&truth, Form::Octahedral { size }, &tests));
             }
             if field.name == "indirect light" {
                 for rays in [4, 16, 64, 256] {

@@ -134,6 +134,7 @@ fn small_room() -> Result<Project, Box<dyn Error>> {
         task: Task::default(),
         area: None,
         area_reflectance: None,
+        given: gershun::glare::source::Given::default(),
         written: None,
     }];
     Ok(project)

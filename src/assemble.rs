@@ -11,7 +11,7 @@ use crate::emitters::{Emitters, Sighted};
 use crate::judge::{self, Judged};
 use crate::measure::{self, Answers, area, room_ugr};
 use crate::norm::State;
-use crate::outcome::{Condition, Requirement, UgrTableOutcome, Verdict};
+use crate::outcome::{Bound, Condition, Requirement, UgrTableOutcome, Verdict};
 use crate::plan::{Plan, PlannedQuantity, PlannedRequirement, Subject};
 use crate::project::{Compare, Project, Room, World};
 use crate::quantity::Statistic;
@@ -155,10 +155,31 @@ impl Context<'_> {
         })
     }
 
+    /// The condition in which a requirement is judged: the norm's, in which its upper limits of illuminances may
+    /// have a state of their own.
+    fn condition_of(&self, planned: &PlannedRequirement) -> Condition {
+        let usual = self.condition();
+        let norm = self.project.norm.as_ref().map(|norm| &norm.standard);
+        let is_upper = matches!(planned.bound, Bound::Max(_))
+            && planned.quantity.unit() == "lx"
+            && !planned.statistic.is_ratio();
+        match norm.filter(|norm| norm.id == planned.standard && is_upper) {
+            Some(norm) if usual.state == State::Maintained => {
+                Condition { state: norm.application.upper_limit_state.value, ..usual }
+            }
+            _ => usual,
+        }
+    }
+
     /// Weights of the norm's condition.
     fn weights(&self, light_scene: usize, room: &Room) -> Vec<f64> {
+        self.weights_in(self.condition().state, light_scene, room)
+    }
+
+    /// Weights of a state.
+    fn weights_in(&self, state: State, light_scene: usize, room: &Room) -> Vec<f64> {
         let light_scene = &self.project.light_scenes[light_scene];
-        self.dimmed(match self.condition().state {
+        self.dimmed(match state {
             State::Maintained => measure::weights(self.world, light_scene, room, true),
             State::Initial => measure::weights(self.world, light_scene, room, false),
             State::Emergency => measure::emergency_weights(self.world, light_scene, room),

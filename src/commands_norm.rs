@@ -60,10 +60,10 @@ pub fn show(name: &str, row: Option<&str>) -> u8 {
             Err(code) => return code,
         },
     };
-    let mut text =
-        format!("{}: {}, {}\n{}\n", standard.short, standard.title, standard.edition, standard.note);
+    let mut text = standard.head();
     for entry in rows {
-        text.push_str(&format!("\n{}  {}: {}\n", entry.reference, entry.area, entry.task));
+        text.push_str(format!("\n{}  {}", entry.reference, entry.called()).trim_end());
+        text.push('\n');
         let limits = if row.is_some() { standard.requirements(entry) } else { entry.limits.clone() };
         for limit in limits {
             let statistic = limit.statistic.key();

@@ -173,7 +173,7 @@ pub fn spacing_m(one_side_m: f64, other_side_m: f64) -> f64 {
 /// sides; E_n is measured on `normal`. The sides of the rule are those inside the border.
 ///
 /// EN asks that the grid does not repeat the luminaires' pattern: where a spacing comes within 2 %
-/// of `avoid_spacing_m` (luminaire spacing along u and v), that edge gets one point more. It does
+/// of `avoid_spacing_m` (luminaire spacing along u and v), that edge gets points until it does not. It does
 /// not apply to [`GridRule::Count`], which is taken at its word.
 ///
 /// # Errors
@@ -360,13 +360,16 @@ fn counts(
     if matches!(rule, GridRule::Count(_)) {
         return Ok(counts);
     }
-    for axis in 0..2 {
-        let avoid_m = avoid_spacing_m.map_or(0.0, |avoid| avoid[axis]);
-        if avoid_m > 0.0 && (sides_m[axis] / counts[axis] as f64 / avoid_m - 1.0).abs() < COINCIDENCE {
-            // An odd number stays odd.
-            counts[axis] += if rule == GridRule::EnSports { 2 } else { 1 };
+    let avoid = |counts: &mut [usize; 2]| {
+        for axis in 0..2 {
+            let avoid_m = avoid_spacing_m.map_or(0.0, |avoid| avoid[axis]);
+            while avoid_m > 0.0 && (sides_m[axis] / counts[axis] as f64 / avoid_m - 1.0).abs() < COINCIDENCE {
+                // An odd number stays odd.
+                counts[axis] += if rule == GridRule::EnSports { 2 } else { 1 };
+            }
         }
-    }
+    };
+    avoid(&mut counts);
     if matches!(rule, GridRule::En | GridRule::EnAtMost(_)) {
         // Cells between 1:2 and 2:1: the coarser edge gets points until they are.
         let cell = |counts: [usize; 2], axis: usize| sides_m[axis] / counts[axis] as f64;
@@ -375,6 +378,7 @@ fn counts(
                 counts[axis] = (sides_m[axis] / (2.0 * cell(counts, other))).ceil() as usize;
             }
         }
+        avoid(&mut counts);
     }
     affordable(counts)
 }

@@ -100,6 +100,11 @@ pub struct Row {
     pub modified_lx: Option<(f64, Verified)>,
     /// Height of the plane if the row names one, m; 0 is the floor. For a vertical plane its middle.
     pub plane_m: Option<f64>,
+    /// Strip along the walls that an area made from the room's outline leaves out, m; `None`: the norm's.
+    pub border_m: Option<f64>,
+    /// Whether it speaks of a part of a room that the outline does not tell (a court, the middle of a route):
+    /// no area is made for it, the project must list one.
+    pub part_of_room: bool,
     /// Remarks.
     pub note: String,
     /// Standing of the row's mean illuminance, or of its first limit.
@@ -251,6 +256,12 @@ impl Limit {
 }
 
 impl Row {
+    /// Group and task, what there is of them.
+    pub fn called(&self) -> String {
+        let parts = [&self.area, &self.task].map(String::as_str);
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": ")
+    }
+
     /// The limit on the illuminance of the task area: its mean, or its minimum where the norm limits that.
     pub fn illuminance(&self) -> Option<&Limit> {
         self.limits.iter().find(|limit| limit.is_task_level())

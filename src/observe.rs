@@ -229,6 +229,7 @@ where
         for (number, &gaze) in viewpoint.directions.iter().enumerate() {
             let zones = (light.zones)(index, number, &weights);
             let beside = Beside {
+                given: viewpoint.given,
                 zones: zones.as_ref().map_err(|reason| *reason),
                 field: (light.field)(index, number, &weights),
                 ground: Err(NO_AREA),

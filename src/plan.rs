@@ -15,6 +15,7 @@ mod zones;
 use glam::DVec3;
 
 pub use ground::PlannedGround;
+pub use requirements::other_plane;
 pub use tasks::{
     BEHIND, FIELD_HALF_ANGLE_DEG, NOT_ASKED, PlannedTask, TaskZones, concerns_task, field_of_view,
 };

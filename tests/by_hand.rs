@@ -314,6 +314,19 @@ fn a_clear_pane_at_normal_incidence_multiplies_by_its_transmittance() {
     exact("two panes", point(&run(&text, &two, 2, quick()), "below", "E_h"), 250.0 * 0.875 * 0.875);
 }
 
+/// Catches: a measured pane read at another angle than that between ray and normal, or by its cosine.
+#[test]
+fn a_measured_pane_passes_what_its_table_says_at_the_angle_of_incidence() {
+    let pane = "pane = { glass = { angle = [0, 30, 60, 90], transmittance = [0.6, 0.5, 0.3, 0], reflectance = [0, 0, 0, 0] } }";
+    let wide = with_sheets(&[square("Pane", "pane", [2.0, 2.0, 1.5], 1.9)]);
+    for (angle_deg, passed) in [(0.0f64, 0.6), (30.0, 0.5), (40.0, 0.5 - 0.2 / 3.0)] {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let text = cad(pane, &spot("below", [2.0 + 2.0 * sin / cos, 2.0, 0.75], r#""E_h""#));
+        let direct = 250.0 * cos.powi(3) * passed;
+        exact(&format!("{angle_deg}°"), point(&run(&text, &wide, 2, quick()), "below", "E_h"), direct);
+    }
+}
+
 /// Catches: `body` that frees all luminaires of the plate, or frees none.
 #[test]
 fn a_body_is_transparent_to_its_own_luminaire_only() {

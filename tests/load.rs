@@ -215,6 +215,18 @@ fn bad_projects() -> Vec<Bad> {
             &[(P, 8, "goes with `reflectance` only")],
         ),
         bad(
+            "measured glass that gains light",
+            "[luminaires.A]",
+            "[materials]\nFloor = { glass = { angle = [0, 90], transmittance = [0.8, 0], reflectance = [0.3, 1] } }\n[luminaires.A]",
+            &[(P, 8, "no more than 1, found 0.8 and 0.3"), (P, 8, "glass = 0.88")],
+        ),
+        bad(
+            "measured glass with a hole",
+            "[luminaires.A]",
+            "[materials]\nFloor = { glass = { angle = [0, 90], transmittance = [0.8], reflectance = [0.1, 1] } }\n[luminaires.A]",
+            &[(P, 8, "2 angles, 1 transmittances, 2 reflectances")],
+        ),
+        bad(
             "glossy emitter",
             "[luminaires.A]",
             "[materials]\nFloor = { reflectance = 0.5, emit = 10, specular = 0.1, ward = 0.1 }\n[luminaires.A]",

@@ -87,8 +87,8 @@ fn methods_agree_behind_a_partition() {
     ];
     let demand = Demand { receivers, rays: vec![], flux: false };
     let (scene, twin) = (hall(3000.0, [0.2, 0.3], true), hall(3000.0, [0.2, 0.4], true));
-    let links = found(&scene, &demand, Method::Links, 512);
-    let other = found(&twin, &demand, Method::Links, 512);
+    let links = found(&scene, &demand, Method::Links, 1024);
+    let other = found(&twin, &demand, Method::Links, 1024);
     let mut told = 0;
     for (method, blocks, resolve) in [(Method::Path, 4096, 0.4), (Method::Local, 4096, 0.5)] {
         let path = found(&scene, &demand, method, blocks);

@@ -189,3 +189,62 @@ fn an_unknown_index_is_refused_with_its_line_and_the_known_ones() {
         assert!(errors[0].hint.contains("name a viewpoint"), "{}", errors[0]);
     }
 }
+
+/// Catches: what a viewpoint is given not handed to its indices, or to the wrong one; a form with other light in it.
+#[test]
+fn what_no_view_tells_can_be_given() {
+    let given = "age = 60\nceiling_coverage = 0.4\nground = { lx = 300, reflectance = 0.2 }\nroad = 2\n";
+    let keys = ["UGR", "GGR", "GR", "f_TI", "L_veil_SH", "L_veil_age"];
+    let text = format!("{ROOM}indices = {keys:?}\n{given}");
+    let outcome = run(&text, &[], 64, Effort::default());
+    let view = &outcome.rooms[0].viewpoints[0];
+    let index = |key: &str| {
+        let found = view.indices.iter().find(|index| index.key == key).expect("it was asked for");
+        *found.estimate.as_ref().unwrap_or_else(|why| panic!("{key}: {why}"))
+    };
+    let ugr = view.ugr.as_ref().expect("two lamps are seen").value;
+    let indirect_lx = std::f64::consts::PI * view.background_cd_m2;
+    let direct_lx = view.e_v_lx - indirect_lx;
+    let gain = 2.55 * (1.0 + direct_lx / 220.0) / (1.0 + direct_lx / indirect_lx);
+    let ggr = |coverage: f64| ugr + (1.18 - 0.18 / coverage) * 8.0 * gain.log10();
+    assert!((index("GGR").value - ggr(0.4)).abs() < 1e-9, "{} is not {}", index("GGR").value, ggr(0.4));
+    assert!((index("GGR").value - ggr(0.5)).abs() > 1e-3, "another ceiling passes");
+    let environment = 0.035 * 0.2 * 300.0 / std::f64::consts::PI;
+    let gr = 27.0 + 24.0 * (index("L_veil_SH").value / environment.powf(0.9)).log10();
+    assert!((index("GR").value - gr).abs() < 1e-9, "{} is not {gr}", index("GR").value);
+    // 10 Σ E/θ² (1 + (A/70)⁴) against 9.86 Σ E/θ² (1 + (A/66.4)⁴): all angles are below 60°.
+    let aged = index("L_veil_age").value / (1.0 + (60.0f64 / 70.0).powi(4));
+    let veil = 0.986 * aged * (1.0 + (60.0f64 / 66.4).powi(4));
+    let increment = 65.0 * veil / 2f64.powf(0.8);
+    assert!(
+        (index("f_TI").value / increment - 1.0).abs() < 1e-9,
+        "{} is not {increment}",
+        index("f_TI").value
+    );
+    for key in keys.into_iter().skip(1) {
+        let interval = index(key);
+        assert!(interval.lo < interval.value && interval.value < interval.hi, "{key}: {interval:?}");
+    }
+}
+
+/// Catches: a share above 1 or an age of nobody taken as it stands.
+#[test]
+fn what_is_given_wrongly_is_refused_with_its_line() {
+    for (line, message) in [
+        ("age = 0", "age must lie in 1 … 120, found 0"),
+        ("ceiling_coverage = 1.5", "found 1.5"),
+        ("ground = { lx = 300, reflectance = 2 }", "reflectance of the ground must lie in 0 … 1, found 2"),
+        ("ground = { lx = -1, reflectance = 0.2 }", "lx of the ground must be at least 0, found -1"),
+        ("road = nan", "road must be at least 0"),
+        ("ceiling_coverage = 0.1", "ceiling_coverage must lie in 0.15 … 1, found 0.1"),
+        ("ground = { lx = 300 }", "the ground is not known"),
+        ("ground = {}", "the ground is not known"),
+        ("ground = { area = \"Nowhere\" }", "no area \"Nowhere\""),
+        ("ground = { area = \"Nowhere\", lx = 300 }", "give either `area` or `lx`"),
+    ] {
+        let text = format!("{ROOM}{line}\n");
+        let errors = load(folder(&text, &[]).path(), &LoadOptions::default()).expect_err("refused");
+        assert_eq!((errors.len(), errors[0].line), (1, text.lines().count()), "{line}: {errors:?}");
+        assert!(errors[0].message.contains(message), "{}", errors[0]);
+    }
+}

@@ -9,8 +9,8 @@ use crate::measure::glare_sources::Convention;
 use crate::measure::zones::ZoneLight;
 use crate::measure::{Gauged, area, intensity, room_ugr, view};
 use crate::norm::Light;
-use crate::outcome::{Bound, UgrTableOutcome, Verdict};
-use crate::plan::{BEHIND, NOT_ASKED, PlannedRequirement, Subject};
+use crate::outcome::{Bound, Condition, UgrTableOutcome, Verdict};
+use crate::plan::{BEHIND, NOT_ASKED, PlannedRequirement, Subject, other_plane};
 use crate::project::{Declared, Room};
 use crate::quantity::{Property, Quantity};
 use crate::scene::Channel;
@@ -41,8 +41,13 @@ impl Context<'_> {
         match &planned.subject {
             Subject::Area(place, quantity) => {
                 let asked = &self.plan.rooms[room].areas[*place].quantities[*quantity];
-                let blocks = self.blocks(asked, planned.light_scene, entry);
-                let note = self.noted(&[&blocks]);
+                let condition = self.condition_of(planned);
+                let weights = self.weights_in(condition.state, planned.light_scene, entry);
+                let blocks = area::blocks(&self.answers, asked, &weights, condition.light);
+                let mut note = noted(condition, &[&blocks]);
+                if let Some([found_m, named_m]) = self.other_plane(room, *place, planned) {
+                    note = format!("{note}; area at {found_m:.2} m, the row names a plane at {named_m:.2} m");
+                }
                 (area::gauge(&blocks, planned.statistic, alpha), note, None)
             }
             Subject::Viewpoint(viewpoint) => {
@@ -57,7 +62,7 @@ impl Context<'_> {
                 let areas = &self.plan.rooms[room].areas;
                 let own = self.blocks(&areas[*place].quantities[*quantity], planned.light_scene, entry);
                 let task = self.blocks(&areas[*task].quantities[*of], planned.light_scene, entry);
-                let note = self.noted(&[&own, &task]);
+                let note = noted(self.condition(), &[&own, &task]);
                 (area::gauge_of_task(&own, &task, alpha), note, None)
             }
             Subject::UgrTable(shr) => {
@@ -109,16 +114,11 @@ impl Context<'_> {
         }
     }
 
-    /// The condition of illuminances, and whether light may be missing in them.
-    fn noted(&self, blocks: &[&area::Blocks]) -> String {
-        let note = self.condition().note();
-        if blocks.iter().any(|blocks| blocks.is_unseen()) {
-            format!("{note}; {UNSEEN}")
-        } else if blocks.iter().any(|blocks| blocks.is_missed()) {
-            format!("{note}; {MISSED}")
-        } else {
-            note.into()
-        }
+    /// Height of an area and of the plane that the norm's row names, where they differ, m.
+    fn other_plane(&self, room: usize, place: usize, planned: &PlannedRequirement) -> Option<[f64; 2]> {
+        let norm = self.project.norm.as_ref().filter(|norm| norm.standard.id == planned.standard)?;
+        let row = norm.standard.row(&planned.clause)?;
+        other_plane(row, &self.world.rooms[room], &self.plan.rooms[room].areas[place])
     }
 
     /// Largest emergency intensity among the luminaires of a type that hang in a class of heights, initial.
@@ -316,6 +316,7 @@ impl Context<'_> {
         let light = view::EyeLight::of_row(&self.answers, planned.row, &weights);
         let zones = self.zones(room, index, &weights).ok_or(BEHIND);
         let beside = Beside {
+            given: self.world.viewpoints[planned.viewpoint].given,
             zones: zones.as_ref().map_err(|reason| *reason),
             field: self.field(room, index, &weights).ok_or(NOT_ASKED),
             ground: self.ground(room, index, &weights, indices),
@@ -323,6 +324,18 @@ impl Context<'_> {
         };
         let asked = view::Asked { gaze: planned.direction, indices, convention, beside };
         view::glare(&light, self.emitters, sighted, &asked, &weights, alpha)
+    }
+}
+
+/// The condition of illuminances, and whether light may be missing in them.
+fn noted(condition: Condition, blocks: &[&area::Blocks]) -> String {
+    let note = condition.note();
+    if blocks.iter().any(|blocks| blocks.is_unseen()) {
+        format!("{note}; {UNSEEN}")
+    } else if blocks.iter().any(|blocks| blocks.is_missed()) {
+        format!("{note}; {MISSED}")
+    } else {
+        note.into()
     }
 }
 

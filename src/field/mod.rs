@@ -2,7 +2,10 @@
 //! material reflects or passes on, one number per channel (initial flux). It is an approximation,
 //! frozen after it is built; the solver corrects it without bias, so it decides only the noise.
 
+pub mod angular;
 mod neighbours;
+pub mod nodal;
+pub mod nodes;
 mod patches;
 mod smooth;
 pub mod store;

@@ -315,7 +315,7 @@ impl Patches {
 
 /// Index of the part at weights (s, t) of the second and third corner, and the weights within it: strips
 /// of constant s, in each strip upright and inverted parts alternate along t.
-fn part_at([s, t]: [f64; 2], divisions: u32) -> (u32, [f64; 2]) {
+pub(super) fn part_at([s, t]: [f64; 2], divisions: u32) -> (u32, [f64; 2]) {
     let n = f64::from(divisions);
     let strip = ((s * n) as u32).min(divisions - 1);
     let cell = ((t * n) as u32).min(divisions - 1 - strip);
@@ -326,7 +326,7 @@ fn part_at([s, t]: [f64; 2], divisions: u32) -> (u32, [f64; 2]) {
 }
 
 /// Weights in the triangle of the weights `local` in one part.
-fn within(part: u32, divisions: u32, local: [f64; 2]) -> [f64; 2] {
+pub(super) fn within(part: u32, divisions: u32, local: [f64; 2]) -> [f64; 2] {
     let strip =
         (0..divisions).take_while(|&strip| strip * (2 * divisions - strip) <= part).last().unwrap_or(0);
     let rest = part - strip * (2 * divisions - strip);

@@ -197,6 +197,27 @@ fn a_list_keeps_order_and_normals() {
 }
 
 /// Catches: luminaires in rows that are taken for irregular, or scattered ones for regular.
+/// Catches: a spacing that stays within 2 % of the luminaires' after its one point more.
+#[test]
+fn one_more_point_of_many_is_not_always_enough() {
+    // p = 0.2 · 5^lg 8 = 0.855 m: 71 columns of 0.845 m, and 72 of 0.833 m are 1.4 % away.
+    let laid = |avoid| {
+        let grid =
+            rectangle(DVec3::ZERO, DVec3::X * 60.0, DVec3::Y * 8.0, DVec3::Z, GridRule::En, 0.0, avoid);
+        grid.unwrap().columns
+    };
+    assert_eq!((laid(None), laid(Some([60.0 / 71.0, 0.0]))), (71, 73));
+    let narrow = |avoid| {
+        let grid =
+            rectangle(DVec3::ZERO, DVec3::X * 10.0, DVec3::Y * 0.9, DVec3::Z, GridRule::En, 0.0, avoid);
+        let grid = grid.unwrap();
+        [grid.columns, grid.rows]
+    };
+    let [columns, rows] = narrow(None);
+    let found = narrow(Some([10.0 / columns as f64, 0.9 / rows as f64]));
+    assert!(found[0] > columns && found[1] > rows, "{found:?} of {columns} and {rows}");
+}
+
 #[test]
 fn luminaires_in_rows_have_a_spacing_and_scattered_ones_none() {
     let field: Vec<DVec3> = (0..12)

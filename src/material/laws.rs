@@ -20,6 +20,9 @@ fn examples() -> Vec<Bsdf> {
         Bsdf::Opal { reflectance: 0.4, transmittance: 0.5 },
         Bsdf::Mirror { reflectance: 0.9 },
         Bsdf::Glass(Pane::CLEAR),
+        Bsdf::Glass(Pane::Measured(
+            pane::Table::new(&[[0.0, 0.7, 0.2], [60.0, 0.5, 0.3], [90.0, 0.0, 1.0]]).expect("a good table"),
+        )),
         Bsdf::Emitter { luminance_cd_m2: 100.0, reflectance: 0.3 },
         Bsdf::Lambert { reflectance: 0.0 },
         glossy(0.3, Lobe::Phong(Phong::new(0.5, 60.0))),

@@ -3,7 +3,7 @@
 
 mod ggx;
 mod lobe;
-mod pane;
+pub mod pane;
 mod phong;
 mod phong_paper;
 mod ward;
@@ -29,7 +29,6 @@ pub struct Material {
 
 /// The closed set of scattering models. Luminous values, no colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a scene has few materials, and they are read by reference")]
 pub enum Bsdf {
     /// Perfectly diffuse reflection, f = ρ/π.
     Lambert {

@@ -16,8 +16,8 @@ use crate::project::{Room, World};
 use crate::scene::Channel;
 use crate::units::{Nits, Undefined};
 
-/// Why no viewpoint has f_TI.
-const NO_ROAD_HERE: &str = "a room has no road: f_TI is computed of images, with the road's luminance given";
+/// Why a viewpoint without a road has no f_TI.
+const NO_ROAD_HERE: &str = "a room has no road: f_TI needs its mean luminance (`road` of the viewpoint)";
 
 /// How far below the room's height a surface may shine and still belong to the ceiling, m.
 const CEILING_M: f64 = 0.25;
@@ -25,6 +25,8 @@ const CEILING_M: f64 = 0.25;
 /// What is known beside a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Beside<'a> {
+    /// What the user says about observer and surroundings; it goes before what is computed.
+    pub given: Given,
     /// Light of the zones about the task.
     pub zones: Result<&'a ZoneLight, &'a str>,
     /// Mean luminance of the field of view, cd/m².
@@ -79,16 +81,22 @@ impl Blockwise {
 impl<'a> Beside<'a> {
     /// Nothing, for one reason.
     pub fn nothing(reason: &'a str) -> Self {
-        Self { zones: Err(reason), field: Err(reason), ground: Err(reason), ceiling: Err(reason) }
+        let given = Given::default();
+        Self { given, zones: Err(reason), field: Err(reason), ground: Err(reason), ceiling: Err(reason) }
+    }
+
+    /// The illuminated area, unless the user gives another ground.
+    fn lit(&self) -> Option<Lit<'a>> {
+        if self.given.ground.is_some() { None } else { self.ground.ok() }
     }
 
     /// What the indices take for given.
     pub fn given(&self) -> Given {
         let ground = |lit: Lit| Ground { mean_lx: lit.mean_lx.estimate.value, reflectance: lit.reflectance };
         Given {
-            ceiling_coverage: self.ceiling.ok(),
-            ground: self.ground.ok().map(ground),
-            ..Given::default()
+            ceiling_coverage: self.given.ceiling_coverage.or(self.ceiling.ok()),
+            ground: self.given.ground.or(self.lit().map(ground)),
+            ..self.given
         }
     }
 
@@ -99,7 +107,7 @@ impl<'a> Beside<'a> {
 
     /// Standard errors of field and ground.
     pub fn errors(&self) -> [f64; 2] {
-        [self.field.ok(), self.ground.ok().map(|lit| lit.mean_lx)]
+        [self.field.ok(), self.lit().map(|lit| lit.mean_lx)]
             .map(|known| known.map_or(0.0, |known| known.estimate.se))
     }
 
@@ -121,13 +129,21 @@ impl<'a> Beside<'a> {
             "DGR" | "VCP" | "L_mean" => self.field.ok().map(|_| {
                 format!("field of view: a cone of 5 sr, {FIELD_HALF_ANGLE_DEG:.1}° about the line of sight, luminaires included")
             }),
-            "GGR" => self.ceiling.ok().map(|share| format!("{share:.3} of the ceiling shines")),
-            "GR" => self.ground.ok().map(|lit| {
-                format!(
-                    "area \"{}\" of {:.1} lx at initial flux, reflectance {:.3}",
-                    lit.name, lit.mean_lx.estimate.value, lit.reflectance
-                )
-            }),
+            "GGR" => match self.given.ceiling_coverage {
+                Some(share) => Some(format!("{share:.3} of the ceiling shines, as given")),
+                None => self.ceiling.ok().map(|share| format!("{share:.3} of the ceiling shines")),
+            },
+            "GR" => match (self.given.ground, self.lit()) {
+                (Some(Ground { mean_lx, reflectance }), _) => {
+                    Some(format!("ground of {mean_lx:.1} lx, reflectance {reflectance:.3}, as given"))
+                }
+                (None, lit) => lit.map(|lit| {
+                    format!(
+                        "area \"{}\" of {:.1} lx at initial flux, reflectance {:.3}",
+                        lit.name, lit.mean_lx.estimate.value, lit.reflectance
+                    )
+                }),
+            },
             _ => None,
         }
     }
@@ -142,7 +158,7 @@ impl<'a> Beside<'a> {
         let field = self.field.ok().map(|known| {
             (Sight { mean: Some(Nits(known.estimate.value + added(&known))), ..sight.clone() }, known)
         });
-        let ground = self.ground.ok().zip(sight.given.ground).map(|(lit, ground)| {
+        let ground = self.lit().zip(sight.given.ground).map(|(lit, ground)| {
             let ground = Ground { mean_lx: ground.mean_lx + added(&lit.mean_lx), ..ground };
             let given = Given { ground: Some(ground), ..sight.given };
             (Sight { given, ..sight.clone() }, lit.mean_lx)

@@ -113,6 +113,9 @@ pub struct Application {
     pub illuminance_state: Fact<State>,
     /// Which light counts for illuminances.
     pub light: Fact<Light>,
+    /// State in which upper limits of illuminances are judged where others are judged maintained: a new
+    /// installation gives the most light.
+    pub upper_limit_state: Fact<State>,
     /// State in which glare is judged.
     pub ugr_state: Fact<State>,
     /// Which UGR is judged.
@@ -142,6 +145,8 @@ pub struct Application {
     pub eye_height_standing_m: Fact<f64>,
     /// Strip along the walls that may be left out of a grid, m.
     pub border_m: Fact<f64>,
+    /// Whether rows speak of parts of rooms that the outline does not tell; each row may say otherwise.
+    pub part_of_room: bool,
     /// Requirements for the strip around a task area.
     pub surrounding: Option<Surrounding>,
     /// Least mean on the area around a task (a sport's total area) as a share of the mean that is
@@ -207,6 +212,7 @@ impl Default for Application {
         Self {
             illuminance_state: customary(State::Maintained),
             light: customary(Light::All),
+            upper_limit_state: customary(State::Initial),
             ugr_state: customary(State::Initial),
             ugr_method: customary(UgrMethod::Table),
             ugr_shr: customary(0.25),
@@ -221,6 +227,7 @@ impl Default for Application {
             eye_height_seated_m: customary(1.2),
             eye_height_standing_m: customary(1.6),
             border_m: customary(0.5),
+            part_of_room: false,
             surrounding: None,
             surrounding_of_task: None,
             background: None,

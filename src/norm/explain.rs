@@ -24,7 +24,7 @@ pub const COLUMN_WORDS: [(&str, &str); 11] = [
 
 /// How a norm is applied and what its columns mean.
 pub fn explain(standard: &Standard) -> String {
-    let mut text = head(standard);
+    let mut text = standard.head();
     application(&mut text, &standard.application);
     text.push_str("\nColumns\n");
     let used = |name: &str| standard.rows.iter().any(|row| has_column(row, name));
@@ -40,9 +40,9 @@ pub fn explain(standard: &Standard) -> String {
 
 /// What a row asks for, in which zone, and how well that is known.
 pub fn explain_row(standard: &Standard, row: &Row) -> String {
-    let mut text = head(standard);
+    let mut text = standard.head();
     let clause = if row.clause.is_empty() { String::new() } else { format!(" ({})", row.clause) };
-    let _ = writeln!(text, "\n{}{clause}  {}: {}", row.reference, row.area, row.task);
+    let _ = writeln!(text, "\n{}", format!("{}{clause}  {}", row.reference, row.called()).trim_end());
     let height = row.plane_m.unwrap_or(standard.application.working_plane_m.value);
     let plane = match (row.plane, row.plane_name.as_str()) {
         (Plane::Horizontal, "") => format!("horizontal plane at {height} m"),
@@ -51,6 +51,11 @@ pub fn explain_row(standard: &Standard, row: &Row) -> String {
         (Plane::Vertical, name) => format!("vertical plane {name}"),
     };
     line(&mut text, &plane);
+    if row.part_of_room {
+        line(&mut text, "a part of the room: the project lists it as an area, its outline does not tell it");
+    } else if let Some(border_m) = row.border_m {
+        line(&mut text, &format!("border left out at walls: {border_m} m"));
+    }
     if row.limits.iter().any(|limit| limit.zone == Zone::Cylindrical) {
         let heights: Vec<String> = standard
             .application
@@ -106,6 +111,20 @@ pub fn limit_line(zone: Zone, quantity: Quantity, statistic: &str, bound: Bound,
     format!("{zone:<12} {quantity:<16} {bound:<9} {standing}")
 }
 
+impl Standard {
+    /// Name, title, edition and note, what there is of them, on lines of their own.
+    pub fn head(&self) -> String {
+        let mut text = self.short.clone();
+        for (before, part) in [(": ", &self.title), (", edition ", &self.edition), ("\n", &self.note)] {
+            if !part.is_empty() {
+                let _ = write!(text, "{before}{part}");
+            }
+        }
+        text.push('\n');
+        text
+    }
+}
+
 impl Application {
     /// Eye heights at which cylindrical illuminance is taken for people of this posture, m.
     pub fn eye_heights_m(&self, posture: Posture) -> Vec<f64> {
@@ -119,18 +138,6 @@ impl Application {
     }
 }
 
-fn head(standard: &Standard) -> String {
-    let mut text = format!("{}, {}", standard.short, standard.title);
-    if !standard.edition.is_empty() {
-        let _ = write!(text, ", edition {}", standard.edition);
-    }
-    text.push('\n');
-    if !standard.note.is_empty() {
-        let _ = writeln!(text, "{}", standard.note);
-    }
-    text
-}
-
 fn application(text: &mut String, rules: &Application) {
     text.push_str("\nApplication\n");
     if let Some(reason) = &rules.not_judged {
@@ -142,6 +149,10 @@ fn application(text: &mut String, rules: &Application) {
         State::Emergency => "at emergency output, maintained",
     };
     fact(text, "illuminance is judged", state(rules.illuminance_state.value), &rules.illuminance_state);
+    if rules.illuminance_state.value == State::Maintained {
+        let upper = &rules.upper_limit_state;
+        fact(text, "upper limits of illuminance are judged", state(upper.value), upper);
+    }
     let light = match rules.light.value {
         Light::All => "all light",
         Light::Direct => "direct light only, no reflection",
@@ -261,6 +272,15 @@ fn round(value: f64) -> f64 {
 mod tests {
     use super::super::bundled;
     use super::*;
+
+    /// Catches: colons and commas round what a house norm of two lines does not say.
+    #[test]
+    fn what_is_not_there_leaves_no_punctuation() {
+        let house = Standard::parse("id = \"house\"\nrow = [{ ref = \"1\", em = 300 }]\n", "house.toml");
+        let house = house.unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(house.head(), "house\n");
+        assert!(explain_row(&house, &house.rows[0]).starts_with("house\n\n1\n"));
+    }
 
     /// Catches: a rule or a limit that the loader reads and nobody is told of.
     #[test]

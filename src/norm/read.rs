@@ -1,56 +1,17 @@
 //! TOML → [`Standard`]. The shape is checked by serde, the values here, with their place in the file.
 
+mod mistake;
+
 use std::ops::Range;
 
 use toml::Spanned;
 
+use mistake::plainly;
+pub use mistake::{Mistake, NormError};
+
 use super::text::{COLUMNS, Column, Kind, LimitText, RowText, StandardText};
 use super::{Application, Bound, IntensityLimit, Limit, Plane, Row, Standard, Unknown, Verified};
 use crate::quantity::{Quantity, SPELLINGS, Statistic};
-
-/// All mistakes of a norm file.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", .mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"))]
-pub struct NormError {
-    /// At least one, in the order of their discovery.
-    pub mistakes: Vec<Mistake>,
-}
-
-/// One mistake and its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mistake {
-    /// File as given to the parser.
-    pub file: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// The line itself.
-    pub source_line: String,
-    /// Number of characters to underline.
-    pub width: usize,
-    /// What is wrong.
-    pub what: String,
-    /// What to do.
-    pub hint: String,
-}
-
-impl std::fmt::Display for Mistake {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let number = self.line.to_string();
-        let margin = " ".repeat(number.len());
-        let indent = " ".repeat(self.column.saturating_sub(1));
-        writeln!(f, "error: {}", self.what)?;
-        writeln!(f, "{margin}--> {}:{}:{}", self.file, self.line, self.column)?;
-        writeln!(f, "{margin} |")?;
-        writeln!(f, "{number} | {}", self.source_line.replace('\t', " "))?;
-        write!(f, "{margin} | {indent}{}", "^".repeat(self.width))?;
-        if !self.hint.is_empty() {
-            write!(f, "\n{margin} = hint: {}", self.hint)?;
-        }
-        Ok(())
-    }
-}
 
 impl Kind {
     fn range(self) -> (f64, f64, &'static str) {
@@ -278,6 +239,9 @@ impl Reader<'_> {
         if let Some(plane) = &text.plane_m {
             self.check(&plane.span(), "plane_m", *plane.get_ref(), Kind::Height);
         }
+        if let Some(border) = &text.border_m {
+            self.check(&border.span(), "border_m", *border.get_ref(), Kind::Height);
+        }
         if let Some(intensity) = &text.intensity {
             self.check_intensity(&intensity.span(), intensity.get_ref());
         }
@@ -296,6 +260,8 @@ impl Reader<'_> {
             posture: text.posture.unwrap_or_default(),
             modified_lx,
             plane_m: text.plane_m.map(Spanned::into_inner),
+            border_m: text.border_m.map(Spanned::into_inner),
+            part_of_room: text.part_of_room.unwrap_or(rules.part_of_room),
             note: text.note,
             sources: text.sources,
         }
@@ -374,21 +340,6 @@ fn unknown(text: &RowText, rules: &Application, own: Quantity, level: Statistic)
 fn known_columns() -> String {
     let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
     format!("there is: {}", names.join(", "))
-}
-
-/// serde's message in a user's words, and a hint.
-fn plainly(message: &str) -> (String, String) {
-    let message = message.trim().replace('\n', ", ");
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    match quoted[..] {
-        [wrong, ref known @ ..] if message.starts_with("unknown field") => {
-            (format!("unknown key \"{wrong}\""), format!("there is: {}", known.join(", ")))
-        }
-        [missing] if message.starts_with("missing field") => {
-            (format!("the key \"{missing}\" is missing"), String::new())
-        }
-        _ => (message, "compare with a bundled norm: gershun norm show en-12464-1-2021".into()),
-    }
 }
 
 #[cfg(test)]

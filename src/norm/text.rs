@@ -41,6 +41,10 @@ pub(super) struct RowText {
     pub(super) quantity: Option<Spanned<String>>,
     pub(super) plane: Option<Plane>,
     pub(super) plane_m: Option<Spanned<f64>>,
+    /// Strip along the walls that this row leaves out; the norm's where it names none.
+    pub(super) border_m: Option<Spanned<f64>>,
+    /// Whether the row speaks of a part of a room that its outline does not tell.
+    pub(super) part_of_room: Option<bool>,
     /// As the norm writes the plane, `Г-0,8`.
     #[serde(default)]
     pub(super) plane_name: String,

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::emitters::{Emitters, Lookout, SeenPiece, Sighted, sighted_from};
 use crate::estimate::Estimate;
+use crate::glare::source::Given;
 use crate::measure::beside::{self, Beside};
 use crate::measure::glare_sources::Convention;
 use crate::measure::{Answers, view, weights};
@@ -100,7 +101,13 @@ const ON_VIEWPOINTS: &str = "maps do not compute it: list a viewpoint, and run `
 /// What is known beside the views of a map.
 fn beside_views(world: &World, map: &GlareMap, weights: &[f64]) -> Beside<'static> {
     let ceiling = beside::ceiling(world, &world.rooms[map.room], weights, &map.indices);
-    Beside { zones: Err(NO_TASK), field: Err(ON_VIEWPOINTS), ground: Err(ON_VIEWPOINTS), ceiling }
+    Beside {
+        given: Given::default(),
+        zones: Err(NO_TASK),
+        field: Err(ON_VIEWPOINTS),
+        ground: Err(ON_VIEWPOINTS),
+        ceiling,
+    }
 }
 
 /// The usual effort of a swift map. Rays by powers of two: Sobol points fill their strata only so.

@@ -62,6 +62,10 @@ pub struct Requirement {
     pub at_risk: Vec<String>,
 }
 
+/// In a note: the area lies in another plane than the one its row speaks of, whose height follows. The table
+/// says it below, since the verdict is one on another plane.
+pub const OTHER_PLANE: &str = "the row names a plane at";
+
 /// A limit that stands instead of the norm's own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Modified {

@@ -16,6 +16,9 @@ use crate::sphere;
 /// How far from a room's nominal wall or ceiling its real surface is looked for, m.
 pub(super) const SNAP_M: f64 = 0.25;
 
+/// Cosine of the tilt up to which a plane of work is nearer to level than to upright.
+const LEVEL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &mut Vec<PlanError>) {
     let mut specs: Vec<AreaSpec> = world.areas.clone();
     for (index, room) in world.rooms.iter().enumerate() {
@@ -111,11 +114,25 @@ fn rule_of(spec: &AreaSpec, corners: &[DVec3], normal: DVec3, holes: &[Vec<DVec2
     if step_m > 0.0 { GridRule::EnAtMost(step_m) } else { spec.rule }
 }
 
-/// The normal of an area on a room's shell that looks into the room, whichever way its edges were listed;
-/// as it is where both sides lie in the room, or none.
-fn inward(room: &Room, middle: DVec3, normal: DVec3) -> DVec3 {
-    let is_in = |side: f64| room.contains(middle + side * 2.0 * SNAP_M * normal.normalize_or_zero());
-    if is_in(-1.0) && !is_in(1.0) { -normal } else { normal }
+/// The side on which an area is measured, in whichever order its corners or edges were listed: planes of work
+/// nearer to level than to upright are lit from above, what stands or hangs at the room's shell is lit from the room.
+/// As it is where both sides lie in the room, or none, and where the project asks for `E_n` in so many words.
+fn lit_side(spec: &AreaSpec, room: &Room, middle: DVec3, normal: DVec3) -> DVec3 {
+    let unit = normal.normalize_or_zero();
+    let is_chosen = spec.quantities.contains(&Quantity::Normal) && spec.kind != AreaKind::Surface;
+    if is_chosen {
+        return normal;
+    }
+    match spec.kind {
+        AreaKind::Volume => normal,
+        AreaKind::Task | AreaKind::Surrounding | AreaKind::Background if unit.z.abs() > LEVEL => {
+            normal * normal.z.signum()
+        }
+        AreaKind::Task | AreaKind::Surrounding | AreaKind::Background | AreaKind::Surface => {
+            let is_in = |side: f64| room.contains(middle + side * 2.0 * SNAP_M * unit);
+            if is_in(-1.0) && !is_in(1.0) { -normal } else { normal }
+        }
+    }
 }
 
 fn lay(spec: &AreaSpec, room: &Room, scene: &Scene, holes: &[Vec<DVec2>]) -> Result<Grid, grid::GridError> {
@@ -124,14 +141,13 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene, holes: &[Vec<DVec2>]) -> Res
     let spacing = |axis: DVec3| grid::regular_spacing_m(&lights, axis.normalize_or_zero());
     match &spec.shape {
         AreaShape::Rect { origin, u, v } => {
-            let is_shell = spec.kind == AreaKind::Surface;
-            let normal = u.cross(*v);
+            let normal = lit_side(spec, room, *origin + 0.5 * (*u + *v), u.cross(*v));
             let corners = [*origin, *origin + *u, *origin + *u + *v, *origin + *v];
             let grid = grid::rectangle(
                 *origin,
                 *u,
                 *v,
-                if is_shell { inward(room, *origin + 0.5 * (*u + *v), normal) } else { normal },
+                normal,
                 rule_of(spec, &corners, normal.normalize_or_zero(), holes),
                 spec.border_m,
                 Some([spacing(*u), spacing(*v)]),
@@ -163,10 +179,10 @@ fn lay(spec: &AreaSpec, room: &Room, scene: &Scene, holes: &[Vec<DVec2>]) -> Res
             let normal = match normal.z.abs() > 0.99 {
                 true if ceiling => DVec3::NEG_Z,
                 true => DVec3::Z,
-                false if is_shell => {
-                    inward(room, corners.iter().sum::<DVec3>() / corners.len().max(1) as f64, normal)
+                false => {
+                    let middle = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
+                    lit_side(spec, room, middle, normal)
                 }
-                false => normal,
             };
             let rule = rule_of(spec, corners, normal, holes);
             let grid = grid::polygon(corners, normal, rule, spec.border_m, &lights)?;

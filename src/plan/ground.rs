@@ -50,7 +50,7 @@ pub(super) fn ground(
             return Err("no area of the room has a horizontal illuminance, against which GR rates glare");
         }
         (Some(_), Some(_), _) => {
-            return Err("the room has several areas: name that of the viewpoint (`area`)");
+            return Err("the room has several areas: name that of the viewpoint (`ground = { area = … }`)");
         }
     };
     let reflectance = match viewpoint.area_reflectance {
@@ -66,7 +66,9 @@ fn under(scene: &Scene, area: &PlannedArea) -> Result<f64, &'static str> {
     let (mut sum, mut count) = (0.0, 0.0);
     for point in counted {
         let Some(hit) = scene.tracer.closest(point.position + ABOVE_M * DVec3::Z, DVec3::NEG_Z, &[]) else {
-            return Err("nothing lies under the area whose reflectance could be taken (`area_reflectance`)");
+            return Err(
+                "nothing lies under the area whose reflectance could be taken (`ground = { reflectance = … }`)",
+            );
         };
         sum += scene.bsdf(hit.triangle).diffuse().0;
         count += 1.0;

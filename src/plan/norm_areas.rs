@@ -33,10 +33,12 @@ pub(super) fn norm_areas(project: &Project, scene: &Scene, room: &Room, index: u
         written: None,
     };
     let narrow = width(&room.footprint, &[]);
-    let border_m = if narrow > 3.0 * application.border_m.value { application.border_m.value } else { 0.0 };
+    let norms_m = row.border_m.unwrap_or(application.border_m.value);
+    let border_m = if narrow > 3.0 * norms_m { norms_m } else { 0.0 };
     let mut areas = Vec::new();
-    // A vertical plane lies where the board or the rack is: nobody can make it from the outline.
-    if row.plane == Plane::Horizontal {
+    // A vertical plane lies where the board or the rack is, a court where it is marked: nobody can make it from
+    // the outline.
+    if row.plane == Plane::Horizontal && !row.part_of_room {
         let plane = AreaShape::Polygon(flat(plane_m));
         areas.push(spec("working plane", AreaKind::Task, plane, border_m));
     }

@@ -314,21 +314,36 @@ pub(super) fn unassessed(
 
 /// Areas that lie in another plane than the one their row names: said, not judged otherwise.
 fn other_planes(norm: &Norm, room: &Room, planned: &PlannedRoom) -> Vec<String> {
-    let tasks = planned.areas.iter().filter(|area| area.kind == AreaKind::Task);
-    let said = tasks.filter_map(|area| {
+    let said = planned.areas.iter().filter_map(|area| {
         let row = norm.standard.row(area.row.as_ref()?)?;
-        let named_m = row.plane_m.filter(|_| row.plane == norm::Plane::Horizontal)?;
-        let found_m = area.grid.points.first()?.position.z - room.floor_m;
-        let horizontal = area.grid.normal.z.abs() > 0.99;
-        (horizontal && (found_m - named_m).abs() > 0.021).then(|| {
-            format!(
-                "Area \"{}\" lies at {found_m:.2} m, row {} names a plane at {named_m:.2} m.",
-                area.name, row.reference
-            )
-        })
+        let [found_m, named_m] = other_plane(row, room, area)?;
+        Some(format!(
+            "Area \"{}\" lies at {found_m:.2} m, row {} names a plane at {named_m:.2} m.",
+            area.name, row.reference
+        ))
     });
     said.collect()
 }
+
+/// Height of a level task area and of the plane that its row names, m, where they are not one; the middle of
+/// an upright one.
+pub fn other_plane(row: &Row, room: &Room, area: &PlannedArea) -> Option<[f64; 2]> {
+    let named_m = row.plane_m.filter(|_| area.kind == AreaKind::Task)?;
+    let count = area.grid.points.len().max(1) as f64;
+    let found_m = area.grid.points.iter().map(|point| point.position.z).sum::<f64>() / count - room.floor_m;
+    let tilt = area.grid.normal.z.abs();
+    let apart_m = match row.plane {
+        norm::Plane::Horizontal if tilt > 0.99 => SAME_PLANE_M,
+        norm::Plane::Vertical if tilt < 0.01 => SAME_MIDDLE_M,
+        norm::Plane::Horizontal | norm::Plane::Vertical => return None,
+    };
+    ((found_m - named_m).abs() > apart_m).then_some([found_m, named_m])
+}
+
+/// Level planes that differ by less are one (a floor is laid 2 cm above the slab), m.
+const SAME_PLANE_M: f64 = 0.021;
+/// The same for the middles of boards and screens, which hang as tall as their users are, m.
+const SAME_MIDDLE_M: f64 = 0.25;
 
 fn bound(bound: norm::Bound) -> Bound {
     match bound {

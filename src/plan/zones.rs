@@ -128,7 +128,7 @@ impl Survey<'_> {
         self.areas(Zone::Task).filter(|area| area.row.as_deref() == Some(self.row.reference.as_str()))
     }
 
-    /// What is missing round a task area.
+    /// What is missing round a task.
     fn beside(&self, task: &PlannedArea, zone: Zone, reason: String) -> Gap {
         let subject = format!("{} · {}", task.name, zone_name(zone));
         let place = self.planned.areas.iter().position(|area| std::ptr::eq(area, task));
@@ -139,10 +139,15 @@ impl Survey<'_> {
         if self.tasks().next().is_some() {
             return Vec::new();
         }
+        let reference = &self.row.reference;
+        if self.areas(Zone::Task).next().is_none() && self.row.part_of_room {
+            let reason = format!("row {reference} speaks of a part of the room: list that part as an area");
+            return vec![Gap { reason, ..nothing_listed(Zone::Task) }];
+        }
         if self.areas(Zone::Task).next().is_none() {
             return vec![nothing_listed(Zone::Task)];
         }
-        let reason = format!("the project lists no task area of row {} in this room", self.row.reference);
+        let reason = format!("the project lists no task area of row {reference} in this room");
         vec![Gap { subject: zone_name(Zone::Task).into(), reason, task: None }]
     }
 

@@ -31,6 +31,15 @@ pub enum EmergencyChoice {
     Flux(f64),
 }
 
+/// What a pane lets through.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GlassChoice {
+    /// Transmittance at normal incidence.
+    Normal(f64),
+    /// By angle of incidence, degrees.
+    Measured { angle: Vec<f64>, transmittance: Vec<f64>, reflectance: Vec<f64> },
+}
+
 /// The light-emitting area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OpeningChoice {
@@ -114,6 +123,31 @@ choice!(Factor, "a factor or { llmf, lsf, lmf }", {
         Ok(Factor::Parts { llmf, lsf, lmf })
     }
 });
+
+choice!(
+    GlassChoice,
+    "a transmittance or { angle = [0, …, 90], transmittance = […], reflectance = […] }",
+    {
+        fn visit_f64<E: Error>(self, value: f64) -> Result<GlassChoice, E> {
+            Ok(GlassChoice::Normal(value))
+        }
+        fn visit_i64<E: Error>(self, value: i64) -> Result<GlassChoice, E> {
+            Ok(GlassChoice::Normal(value as f64))
+        }
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<GlassChoice, A::Error> {
+            #[derive(Deserialize)]
+            #[serde(deny_unknown_fields)]
+            struct Measured {
+                angle: Vec<f64>,
+                transmittance: Vec<f64>,
+                reflectance: Vec<f64>,
+            }
+            let Measured { angle, transmittance, reflectance } =
+                Measured::deserialize(MapAccessDeserializer::new(map))?;
+            Ok(GlassChoice::Measured { angle, transmittance, reflectance })
+        }
+    }
+);
 
 choice!(EmergencyChoice, "a share of the flux or { flux = lumens }", {
     fn visit_f64<E: Error>(self, value: f64) -> Result<EmergencyChoice, E> {

@@ -22,6 +22,7 @@ pub use photometric::{ReadError, is_same_file, read_field, read_image, read_phot
 use crate::geometry::polygon;
 use crate::geometry::trace::Simd;
 use crate::glare::luminances::TASK_DEG;
+use crate::glare::source::Given;
 use crate::grid::GridRule;
 use crate::image::View;
 use crate::norm::Standard;
@@ -316,6 +317,8 @@ pub struct Viewpoint {
     pub area: Option<usize>,
     /// Diffuse reflectance of that area; `None`: of what lies under it.
     pub area_reflectance: Option<f64>,
+    /// What no view tells and some indices ask for.
+    pub given: Given,
     /// Where the user wrote its eye; `None` where no file has it.
     pub written: Option<Place>,
 }

@@ -5,7 +5,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::choices::{
-    AreaGrid, EmergencyChoice, Factor, GoalChoice, OneOrTwo, OpeningChoice, Surfacing, TextOrDate,
+    AreaGrid, EmergencyChoice, Factor, GlassChoice, GoalChoice, OneOrTwo, OpeningChoice, Surfacing,
+    TextOrDate,
 };
 
 /// Numbers and names with their place.
@@ -95,7 +96,7 @@ pub struct MaterialSection {
     pub phong_paper: Option<At<f64>>,
     pub ward: Option<At<f64>>,
     pub mirror: Option<At<f64>>,
-    pub glass: Option<At<f64>>,
+    pub glass: Option<At<GlassChoice>>,
     pub opal: Option<At<OpalSection>>,
     pub emit: Option<At<f64>>,
 }
@@ -261,8 +262,18 @@ pub struct ViewpointSection {
     pub highlights: Option<At<bool>>,
     pub task: Option<At<[f64; 3]>>,
     pub task_deg: Option<At<f64>>,
+    pub age: Option<At<f64>>,
+    pub ceiling_coverage: Option<At<f64>>,
+    pub ground: Option<At<GroundSection>>,
+    pub road: Option<At<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroundSection {
     pub area: Option<At<String>>,
-    pub area_reflectance: Option<At<f64>>,
+    pub lx: Option<At<f64>>,
+    pub reflectance: Option<At<f64>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -78,6 +78,11 @@ pub fn is_unverified(requirement: &Requirement) -> bool {
     requirement.verified == "unverified"
 }
 
+/// Whether it is the project's own requirement, not the norm's.
+pub fn is_own(requirement: &Requirement) -> bool {
+    requirement.standard == PROJECT
+}
+
 /// A requirement in words.
 pub fn sentence(lang: Lang, requirement: &Requirement, naming: Naming) -> Sentence {
     let (quantity, statistic) = (requirement.quantity, requirement.statistic);
@@ -262,7 +267,10 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
         }
         Some(Verdict::Pass) => {
             counts.push(count(Term::PassedOf, decisive.pass));
-            phrase(lang, Term::CompliesWith, &[whose.unwrap_or(project)])
+            // Nobody signs a norm of which a part was left out: the headline says so, not the small print alone.
+            let is_part = norm_decides && norm.is_some() && of_norm.not_assessed > 0;
+            let term = if is_part { Term::CompliesInPart } else { Term::CompliesWith };
+            phrase(lang, term, &[whose.unwrap_or(project)])
         }
         Some(_) => {
             counts.push(count(Term::OpenOf, decisive.open));
@@ -402,6 +410,11 @@ mod tests {
                 format!(
                     "compliance with {own} is not established: 1 of 2 undecided or without value; 1 of 2 requirements pass; {norm}: 2 of 2 pass"
                 ),
+            ),
+            (
+                &[Pass, NotAssessed],
+                &[],
+                format!("complies with {norm} as far as assessed: 1 of 1 requirements pass; 1 not assessed"),
             ),
             (&[NotAssessed], &[], format!("{norm} is not assessed: 1 not assessed")),
             (&[], &[], format!("{norm} is not assessed")),

@@ -2,11 +2,11 @@
 //! added after alignment so that escape codes do not count as width.
 
 use super::sentence::{
-    Naming, Sentence, Tally, is_at_the_limit, is_unverified, overall, room_verdict, sentence,
+    Naming, Sentence, Tally, is_at_the_limit, is_own, is_unverified, overall, room_verdict, sentence,
 };
 use super::words::{self, Lang, Term, phrase, word};
 use super::xml::put;
-use crate::outcome::{Outcome, Requirement, Verdict};
+use crate::outcome::{OTHER_PLANE, Outcome, Requirement, Verdict};
 
 /// Above this many rooms the table has one line per room and lists only what does not pass.
 const ROOMS_IN_FULL: usize = 12;
@@ -71,7 +71,12 @@ fn requirements(listed: &[&Requirement], naming: Naming, style: Style) -> String
     for requirement in listed {
         let Sentence { symbol, place, required, value, interval, verdict, .. } =
             sentence(lang, requirement, naming);
-        let mark = if is_unverified(requirement) { "°" } else { "" };
+        // Beside requirements of a norm one's own must not be taken for another of its limits.
+        let mark = match requirement {
+            own if is_own(own) && listed.iter().any(|other| !is_own(other)) => "*",
+            of_norm if is_unverified(of_norm) => "°",
+            _ => "",
+        };
         let mut verdict = verdict.to_owned();
         if is_at_the_limit(requirement) {
             verdict = format!("{verdict}, {}", word(lang, Term::AtTheLimit));
@@ -150,6 +155,7 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
     };
     let any = |test: &dyn Fn(&Requirement) -> bool| listed.iter().any(|r| test(r));
     note(any(&is_unverified), format!("° {}", word(lang, Term::UnverifiedMeans)));
+    note(any(&is_own) && any(&|r| !is_own(r)), format!("* {}", word(lang, Term::OwnMeans)));
     note(any(&is_at_the_limit), word(lang, Term::AtTheLimitMeans).to_owned());
     note(any(&|r| r.verdict == Verdict::Undecided), word(lang, Term::UndecidedMeans).to_owned());
     for requirement in listed {
@@ -164,6 +170,12 @@ fn footnotes(listed: &[&Requirement], lang: Lang) -> String {
                 true,
                 format!("{symbol} · {}: {said}", one_line(&words::place_name(lang, &requirement.subject))),
             );
+        }
+        if let Some(said) = requirement.note.split("; ").find(|part| part.contains(OTHER_PLANE)) {
+            let said = words::said(lang, said);
+            let symbol = words::symbol(lang, requirement.quantity, requirement.statistic).text();
+            let place = one_line(&words::place_name(lang, &requirement.subject));
+            note(true, format!("{symbol} · {place}: {said}"));
         }
         if let Some(other) = requirement.other_comparison {
             let subject = format!(

@@ -10,7 +10,7 @@
 //! from one diffuse place to the next: a look along a ray returns all places it leads to, each of
 //! weight 1 on average times what reflects it there, and the luminaires met or reflected on the way.
 
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
@@ -33,7 +33,7 @@ const EDGE_POINTS: u32 = 16;
 /// Lobe rays of gather rays and walks survive as often as their lobe reflects …
 pub(super) const ANALOG: f64 = 1.0;
 /// … but lines of sight follow each lobe down to this weight: a highlight is what they ask for.
-const SIGHT: f64 = 0.02;
+pub(super) const SIGHT: f64 = 0.02;
 
 /// Buffers reused from receiver to receiver.
 pub(super) struct Desk {
@@ -49,10 +49,8 @@ pub(super) struct Desk {
     onward: Vec<Landing>,
     /// Highlights about the receiver or the current place.
     bundles: Vec<Bundle>,
-    /// Chances of bright patches at the receiver …
+    /// Chances of bright patches at the receiver.
     chances: Chances,
-    /// … and at the current place of a walk.
-    chances_here: Chances,
 }
 
 impl Desk {
@@ -65,7 +63,6 @@ impl Desk {
             onward: Vec::new(),
             bundles: Vec::new(),
             chances: Chances::default(),
-            chances_here: Chances::default(),
         }
     }
 }
@@ -366,9 +363,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         *residual += here.weight * direct;
     }
     let mut bundles = std::mem::take(&mut desk.bundles);
-    let mut chances = std::mem::take(&mut desk.chances_here);
     bundles.clear();
-    chances.clear();
     // Density of the directions that reflection and transmission draw, times π.
     let scattered = |direction: DVec3| {
         let cos = here.normal.dot(direction);
@@ -377,25 +372,26 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
     if !(transmittance > 0.0) {
         prepared.highlights.about(emitters, here.origin(scene, true), scattered, &mut bundles);
     }
-    // The field's luminance here is albedo/π times what comes: ∫ scattered · L dω = π L̃/albedo.
-    let known = PI * stored(prepared, &here).iter().sum::<f64>() / albedo;
-    prepared.beacons.about(here.point, scattered, 1, Some(known), None, &mut chances);
     let patches = field(prepared).patches();
+    let chances = prepared.chances_of_side(patches.side_at(here.triangle, here.barycentric, here.front));
     let looks = effort.looks.max(1);
     let guided = u32::from(!bundles.is_empty());
     let aimed = u32::from(!chances.is_empty());
     desk.onward.clear();
+    // Looks share the hemisphere evenly; each of them alone follows the cosine, the first included.
+    let spread = Stratified::new(rng);
     for number in 0..looks + guided + aimed {
         let mut target = None;
         let mut share = here.weight * albedo / f64::from(looks);
         let direction = if number < looks {
-            let facing = if rng.uniform() * albedo < reflectance { here.normal } else { -here.normal };
-            sphere::frame(facing) * sphere::cosine_hemisphere(rng.uniforms())
+            let [u, v, choice] = spread.point(number, rng);
+            let facing = if choice * albedo < reflectance { here.normal } else { -here.normal };
+            sphere::frame(facing) * sphere::cosine_hemisphere([u, v])
         } else if number < looks + guided {
             highlights::draw(&bundles, rng.uniforms())
         } else {
             let u = rng.uniforms();
-            let (direction, side) = prepared.beacons.draw(patches, here.point, &chances, u);
+            let (direction, side) = prepared.beacons.draw(patches, here.point, chances, u);
             target = Some(side);
             direction
         };
@@ -412,7 +408,7 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         if target.is_some_and(|side| !Beacons::came_to(patches, &desk.sight, side)) {
             continue;
         }
-        let by_aim = prepared.beacons.density(patches, origin, &chances, &desk.sight);
+        let by_aim = prepared.beacons.density(patches, origin, chances, &desk.sight);
         if guided + aimed > 0 {
             mixture += by_aim;
             share *= cosine / mixture;
@@ -443,7 +439,6 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         }
     }
     desk.bundles = bundles;
-    desk.chances_here = chances;
     if !desk.onward.is_empty() && rng.uniform() < albedo {
         let weighted = |next: &Landing| Landing { weight: here.weight * next.weight, ..*next };
         desk.pending.extend(desk.onward.iter().map(weighted));

@@ -114,6 +114,9 @@ pub(super) struct Chances {
     up_to: Vec<f64>,
 }
 
+/// Nothing is aimed at.
+pub(super) static NOWHERE: Chances = Chances { up_to: Vec::new() };
+
 impl Beacons {
     /// Chooses the beacons of a field: what shines, and what is bright where it is uneven. `stored` is the
     /// luminance of a patch side without what it emits itself, channels summed.

@@ -104,7 +104,7 @@ pub(super) fn look(
 /// absorption is analog, so the weight never changes; `None` is light that is lost or absent.
 /// Openings met after specular reflections that no image covers add their luminance to `met`
 /// (cd/m² per channel): what was done at the ray's origin owns all others.
-fn follow(
+pub(super) fn follow(
     emitters: &Emitters,
     origin: DVec3,
     direction: DVec3,

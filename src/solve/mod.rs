@@ -15,12 +15,15 @@ mod highlights;
 mod lobe;
 mod local;
 mod look;
+pub mod nodal;
 mod path;
 pub mod picture;
 mod prepare;
 mod refine;
 mod sweep;
 mod thumbnail;
+
+use std::f64::consts::PI;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -136,6 +139,8 @@ pub struct Prepared<'s> {
     beacons: Beacons,
     /// Their chances to be aimed at from every receiver; empty where there are none.
     chances: Vec<Chances>,
+    /// The same from the middle of every patch side, for walks; empty where there are no beacons.
+    side_chances: Vec<Chances>,
     /// What chains start from; only for local estimation.
     origins: Option<chains::Origins>,
     /// Largest G = cos θ cos θ′/d² of a connection, 1/m²; the rest is made up for.
@@ -224,6 +229,10 @@ pub fn prepare<'s>(
         Some(field) if !beacons.is_empty() => chances_of(&emitters, demand, field, &beacons, seed),
         _ => Vec::new(),
     };
+    let side_chances = match &field {
+        Some(field) if !beacons.is_empty() => side_chances_of(scene, field, &beacons),
+        _ => Vec::new(),
+    };
     let unshadowed = match method {
         Method::Links | Method::Local | Method::Double => unshadowed_rows(&emitters, demand),
         Method::Path => Vec::new(),
@@ -245,6 +254,7 @@ pub fn prepare<'s>(
         gaps: gaps.unwrap_or_default(),
         beacons,
         chances,
+        side_chances,
         origins,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed,
@@ -273,6 +283,7 @@ pub fn prepare_stored(scene: &Scene, stored: StoredField) -> Prepared<'_> {
         gaps: Gaps::default(),
         beacons: Beacons::default(),
         chances: Vec::new(),
+        side_chances: Vec::new(),
         origins: None,
         bound_m2: local::bound_m2(scene, &effort.local),
         unshadowed: Vec::new(),
@@ -322,6 +333,11 @@ impl Prepared<'_> {
         &self.emitters
     }
 
+    /// Chances of bright patches at a place of a patch side.
+    fn chances_of_side(&self, side: usize) -> &Chances {
+        self.side_chances.get(side).unwrap_or(&beacons::NOWHERE)
+    }
+
     /// Number of stored patches, for the result's record.
     pub fn patches(&self) -> usize {
         self.field.as_ref().map_or(0, |field| field.patches().len())
@@ -349,6 +365,30 @@ fn chances_of(
             chances
         })
         .collect()
+}
+
+/// Chances of bright patches at places of every patch side, as seen from its middle.
+fn side_chances_of(scene: &Scene, field: &LuminanceField, beacons: &Beacons) -> Vec<Chances> {
+    let patches = field.patches();
+    let of_side = |side: usize| {
+        let mut chances = Chances::default();
+        let (reflectance, transmittance) = scene.bsdf(patches.triangle(side)).diffuse();
+        let albedo = reflectance + transmittance;
+        if albedo > 0.0 {
+            let (middle, front) = patches.centre(side);
+            let normal = if side.is_multiple_of(2) { front } else { -front }.normalize_or_zero();
+            // Density of the directions that reflection and transmission draw, times π.
+            let scattered = |direction: DVec3| {
+                let cos = normal.dot(direction);
+                cos.abs() * if cos > 0.0 { reflectance } else { transmittance } / albedo
+            };
+            // The field's luminance here is albedo/π times what comes: ∫ scattered · L dω = π L̃/albedo.
+            let known = PI * field.at(side).iter().sum::<f64>() / albedo;
+            beacons.about(middle, scattered, 1, Some(known), None, &mut chances);
+        }
+        chances
+    };
+    (0..patches.sides()).into_par_iter().map(of_side).collect()
 }
 
 /// Farther than this before a plane, m, lies what a receiver on it may see.

@@ -200,7 +200,7 @@ fn gr_of_a_lamp_over_a_court_is_its_closed_form() {
     let several = court(second);
     let reason = figure(&run(&several, &[], 32, Effort::default()), "V", "GR").unwrap_err();
     assert!(reason.contains("several areas"), "{reason}");
-    let named = format!("{several}area = \"Court\"\narea_reflectance = 0.5\n");
+    let named = format!("{several}ground = {{ area = \"Court\", reflectance = 0.5 }}\n");
     let outcome = run(&named, &[], 32, Effort::default());
     assert!((value(&outcome, "V", "GR") - expected(mean_lx, 0.5)).abs() < 1e-6);
     let level = run(&court("").replace("-0.0349", "0"), &[], 32, Effort::default());

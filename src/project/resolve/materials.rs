@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use crate::material::pane::Table;
 use crate::material::{Bsdf, Lobe, Material, Pane, Phong, PhongPaper, Ward};
+use crate::project::choices::GlassChoice;
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
 use crate::project::schema::{At, File, MaterialSection};
@@ -121,9 +123,7 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
     let MaterialSection { reflectance, specular, mirror, glass, opal, emit, .. } = section.get_ref();
     let before = context.diagnostics.len();
     let whole = section.span();
-    for (value, name) in
-        [(reflectance, "reflectance"), (specular, "specular"), (mirror, "mirror"), (glass, "glass")]
-    {
+    for (value, name) in [(reflectance, "reflectance"), (specular, "specular"), (mirror, "mirror")] {
         if let Some(value) = value {
             context.in_range(value, 0.0, 1.0, name);
         }
@@ -135,6 +135,7 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
             context.error(&specular.span(), message, "");
         }
     }
+    let pane = glass.as_ref().and_then(|glass| pane(glass, context));
     let lobe = lobe(section.get_ref(), context);
     if let Some(emit) = emit {
         context.in_range(emit, 0.0, f64::INFINITY, "emit");
@@ -153,8 +154,9 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
         return None;
     }
     if let Some(lobe) = lobe {
-        let alone = [mirror, glass, emit].into_iter().flatten().next().map(At::span);
-        if let Some(span) = alone.or(opal.as_ref().map(At::span)) {
+        let alone = [mirror, emit].into_iter().flatten().next().map(At::span);
+        let alone = alone.or(glass.as_ref().map(At::span)).or(opal.as_ref().map(At::span));
+        if let Some(span) = alone {
             context.error(
                 &span,
                 "a glossy lobe goes with `reflectance` only",
@@ -172,12 +174,12 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
         };
         return Some(Bsdf::Glossy { reflectance: *reflectance.get_ref(), lobe });
     }
-    match (reflectance, mirror, glass, opal, emit) {
+    match (reflectance, mirror, pane, opal, emit) {
         (Some(reflectance), None, None, None, None) => {
             Some(Bsdf::Lambert { reflectance: *reflectance.get_ref() })
         }
         (None, Some(mirror), None, None, None) => Some(Bsdf::Mirror { reflectance: *mirror.get_ref() }),
-        (None, None, Some(glass), None, None) => Some(Bsdf::Glass(Pane::new(*glass.get_ref()))),
+        (None, None, Some(pane), None, None) => Some(Bsdf::Glass(pane)),
         (None, None, None, Some(opal), None) => Some(Bsdf::Opal {
             reflectance: *opal.get_ref().reflectance.get_ref(),
             transmittance: *opal.get_ref().transmittance.get_ref(),
@@ -192,6 +194,36 @@ fn bsdf(section: &At<MaterialSection>, context: &mut Context) -> Option<Bsdf> {
                 "a material is exactly one of reflectance, mirror, glass, opal, emit",
                 "only `emit` may be given together with `reflectance`",
             );
+            None
+        }
+    }
+}
+
+/// A pane from its normal transmittance, or as measured.
+fn pane(glass: &At<GlassChoice>, context: &mut Context) -> Option<Pane> {
+    let table = match glass.get_ref() {
+        GlassChoice::Normal(transmittance) if (0.0..=1.0).contains(transmittance) => {
+            return Some(Pane::new(*transmittance));
+        }
+        GlassChoice::Normal(transmittance) => Err(format!("glass must lie in 0 … 1, found {transmittance}")),
+        GlassChoice::Measured { angle, transmittance, reflectance } => {
+            let counts = [angle.len(), transmittance.len(), reflectance.len()];
+            if counts == [angle.len(); 3] {
+                let row = |k: usize| [angle[k], transmittance[k], reflectance[k]];
+                Table::new(&(0..angle.len()).map(row).collect::<Vec<_>>())
+            } else {
+                let [angles, passed, reflected] = counts;
+                Err(format!(
+                    "{angles} angles, {passed} transmittances, {reflected} reflectances: there must be as many of each"
+                ))
+            }
+        }
+    };
+    match table {
+        Ok(table) => Some(Pane::Measured(table)),
+        Err(message) => {
+            let hint = "glass = 0.88 at normal incidence, or { angle = [0, 30, 60, 90], transmittance = [0.7, 0.68, 0.5, 0], reflectance = [0.12, 0.12, 0.2, 1] }";
+            context.error(&glass.span(), message, hint);
             None
         }
     }

@@ -9,6 +9,7 @@ mod cameras;
 mod draft;
 mod eyes;
 mod furniture;
+mod given;
 mod glare_maps;
 mod lights;
 mod lists;

@@ -3,9 +3,11 @@
 use glam::DVec3;
 
 use super::draft::Draft;
+use super::given::area_named;
 use super::lists::{Row, Table};
-use super::viewpoints::{area_named, insert, task, with_task};
+use super::viewpoints::{insert, task, with_task};
 use crate::glare::index::{INDICES, parse};
+use crate::glare::source::Given;
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
 use crate::project::schema::File;
@@ -71,6 +73,7 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             task: task.unwrap_or_default(),
             area,
             area_reflectance: None,
+            given: Given::default(),
             written: Some(table.place(row)),
         };
         let mut report = |context: &mut Context, message: String| {

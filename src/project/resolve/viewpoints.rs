@@ -8,11 +8,12 @@ use toml::Spanned;
 
 use super::areas::light_scene_index;
 use super::draft::{Draft, Located, locate};
+use super::given::{given, ground};
 use super::viewpoint_list;
 use crate::glare::index::{self, INDICES, parse};
 use crate::glare::luminances::FIELD_HALF_ANGLES_DEG;
+use crate::glare::source::Given;
 use crate::project::context::Context;
-use crate::project::diagnostics::suggestion;
 use crate::project::schema::{At, File, SweepSection, ViewpointSection};
 use crate::project::{LightScene, Task, Viewpoint};
 use crate::sphere::{azimuth_tilt_deg, rounded_deg};
@@ -36,23 +37,10 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
         };
         let (directions, azimuths_deg): (Vec<DVec3>, Vec<f64>) = lines.into_iter().unzip();
         let Some(task) = task_of(section, eye, &directions, context) else { continue };
+        let Some(given) = given(section, context) else { continue };
+        let Some(ground) = ground(section, drafts, context) else { continue };
         if section.task.is_some() || section.task_deg.is_some() {
             with_task(&mut indices);
-        }
-        let area = match &section.area {
-            None => None,
-            Some(name) => {
-                let Some((_, area)) = area_named(drafts, name.get_ref()) else {
-                    let known = drafts.iter().flat_map(|draft| &draft.areas);
-                    let hint = suggestion(name.get_ref(), known.map(|area| area.name.as_str()));
-                    context.error(&name.span(), format!("no area \"{}\"", name.get_ref()), &hint);
-                    continue;
-                };
-                Some(area)
-            }
-        };
-        if let Some(reflectance) = &section.area_reflectance {
-            context.in_range(reflectance, 0.0, 1.0, "area_reflectance");
         }
         let name_span = section.name.span();
         let viewpoint = Viewpoint {
@@ -65,8 +53,9 @@ pub fn add(file: &File, drafts: &mut [Draft], light_scenes: &[LightScene], conte
             light_scene,
             highlights: section.highlights.as_ref().is_none_or(|wanted| *wanted.get_ref()),
             task,
-            area,
-            area_reflectance: section.area_reflectance.as_ref().map(|rho| *rho.get_ref()),
+            area: ground.area,
+            area_reflectance: ground.reflectance,
+            given: Given { ground: ground.given, ..given },
             written: Some(context.place(&section.eye.span())),
         };
         let mut report = |context: &mut Context, message: String| {
@@ -190,14 +179,6 @@ fn task_of(
 pub(super) fn with_task(indices: &mut Vec<&'static str>) {
     let further = index::of_task().map(|index| index.key).filter(|key| !indices.contains(key));
     indices.extend(further.collect::<Vec<_>>());
-}
-
-/// World and index of an area by its name.
-pub(super) fn area_named(drafts: &[Draft], name: &str) -> Option<(usize, usize)> {
-    drafts
-        .iter()
-        .enumerate()
-        .find_map(|(world, draft)| Some((world, draft.areas.iter().position(|area| area.name == name)?)))
 }
 
 /// Lines of sight with their azimuths in degrees: those of a sweep as it is written where nothing else sets its

@@ -212,21 +212,30 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ),
     // What norms ask for and nothing computes.
     (
-        "half of it within 5 s and all of it within 60 s (two sources)",
-        "половина через 5 с, полная величина через 60 с (два источника)",
+        "response time: half of the light within 5 s, all of it within 60 s (two sources)",
+        "время включения: половина освещённости через 5 с, полная через 60 с (два источника)",
     ),
     (
-        "half of it within 5 s and all of it within 60 s (one source)",
-        "половина через 5 с, полная величина через 60 с (один источник)",
+        "response time: half of the light within 5 s, all of it within 60 s (one source)",
+        "время включения: половина освещённости через 5 с, полная через 60 с (один источник)",
     ),
-    ("at least 1 h (one source)", "не менее 1 ч (один источник)"),
-    ("luminaires at 2 m and higher (one source)", "светильники на высоте 2 м и выше (один источник)"),
+    ("duration: at least 1 h (one source)", "продолжительность: не менее 1 ч (один источник)"),
     (
-        "all of it at once or within 0.5 s (two sources)",
-        "полная величина сразу или через 0,5 с (два источника)",
+        "mounting: luminaires at 2 m and higher (one source)",
+        "установка: светильники на высоте 2 м и выше (один источник)",
     ),
-    ("all of it within 0.5 s (one source)", "полная величина через 0,5 с (один источник)"),
-    ("as long as the risk lasts (one source)", "пока сохраняется опасность (один источник)"),
+    (
+        "response time: all of the light at once or within 0.5 s (two sources)",
+        "время включения: полная освещённость сразу или через 0,5 с (два источника)",
+    ),
+    (
+        "response time: all of the light within 0.5 s (one source)",
+        "время включения: полная освещённость через 0,5 с (один источник)",
+    ),
+    (
+        "duration: as long as the risk lasts (one source)",
+        "продолжительность: пока сохраняется опасность (один источник)",
+    ),
     ("no stroboscopic effect (one source)", "без стробоскопического эффекта (один источник)"),
     ("colour temperature from {} K to {} K", "цветовая температура от {} К до {} К"),
     ("contrast of the edges of steps", "контраст кромок ступеней"),
@@ -311,8 +320,8 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("there is no indirect light at the eye", "отражённого света у глаза нет"),
     ("the mean luminance of the field of view is not known", "средняя яркость поля зрения неизвестна"),
     (
-        "a room has no road: f_TI is computed of images, with the road's luminance given",
-        "в помещении нет дороги: f_TI рассчитывается по изображениям с заданной яркостью дорожного покрытия",
+        "a room has no road: f_TI needs its mean luminance (`road` of the viewpoint)",
+        "в помещении нет дороги: для f_TI нужна её средняя яркость (`road` точки наблюдения)",
     ),
     ("the field of view is dark", "поле зрения тёмное"),
     ("it was not asked for", "не запрашивалось"),
@@ -336,6 +345,11 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("the share of the ceiling that shines is not given", "доля светящейся части потолка не задана"),
     ("nothing of the ceiling shines", "потолок не светится ни в одной части"),
     ("{} of the ceiling shines", "доля светящейся части потолка {}"),
+    ("{} of the ceiling shines, as given", "доля светящейся части потолка {}, задана"),
+    (
+        "ground of {} lx, reflectance {}, as given",
+        "освещаемая площадь с {} лк, коэффициент отражения {}, заданы",
+    ),
     (
         "GGR is made for luminous shares of the ceiling from {} to {}, here {}; below them UGR holds",
         "GGR создан для доли светящейся части потолка от {} до {}, здесь {}; при меньшей действует UGR",
@@ -350,12 +364,12 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "ни у одной области помещения нет горизонтальной освещённости, относительно которой оценивается GR",
     ),
     (
-        "the room has several areas: name that of the viewpoint (`area`)",
-        "в помещении несколько областей: назовите область точки наблюдения (`area`)",
+        "the room has several areas: name that of the viewpoint (`ground = { area = … }`)",
+        "в помещении несколько областей: назовите область точки наблюдения (`ground = { area = … }`)",
     ),
     (
-        "nothing lies under the area whose reflectance could be taken (`area_reflectance`)",
-        "под областью нет поверхности, коэффициент отражения которой можно взять (`area_reflectance`)",
+        "nothing lies under the area whose reflectance could be taken (`ground = { reflectance = … }`)",
+        "под областью нет поверхности, коэффициент отражения которой можно взять (`ground = { reflectance = … }`)",
     ),
     (
         "area \"{}\" of {} lx at initial flux, reflectance {}",
@@ -506,6 +520,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
         "no row of the norm is given: name one in the room, its areas or [norm]",
         "строка нормы не указана: назовите её для помещения, его областей или в [norm]",
     ),
+    (
+        "area at {} m, the row names a plane at {} m",
+        "область на высоте {} м, строка называет плоскость на высоте {} м",
+    ),
     ("the norm's file has no value of {} for row {}", "в файле нормы нет значения {} для строки {}"),
     (
         "the norm judges UGR at observers and the project lists no viewpoint here",
@@ -518,6 +536,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     (
         "the project lists no volume at {} m, the eye height of the row",
         "в проекте не задан объём на высоте {} м – высоте глаз для этой строки",
+    ),
+    (
+        "row {} speaks of a part of the room: list that part as an area",
+        "строка {} относится к части помещения: задайте эту часть как область",
     ),
     ("the project lists no {} round this task area", "вокруг этой рабочей области в проекте не задано: {}"),
     (

@@ -57,6 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 min: Some(limit),
                 max: None,
                 light_scene: None,
+                instead: None,
             });
         }
     }

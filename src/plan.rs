@@ -5,6 +5,7 @@
 mod areas;
 mod ground;
 mod hidden;
+mod instead;
 mod lattice;
 mod norm_areas;
 mod requirements;
@@ -202,6 +203,13 @@ pub enum PlanError {
         /// How many there are at least.
         points: usize,
     },
+    /// A requirement that is to hold instead of a limit which the norm does not have.
+    NothingSetAside {
+        /// What it limits.
+        what: String,
+        /// Where it is written.
+        place: Option<Place>,
+    },
     /// A row that does not exist.
     NoRow {
         /// Norm key.
@@ -229,6 +237,11 @@ impl std::fmt::Display for PlanError {
                 "lengths are metres, in a CAD file too; else give the areas coarser grids: grid = { step = 1 }"
                     .to_owned(),
                 &None,
+            ),
+            Self::NothingSetAside { what, place } => (
+                format!("the norm has no such limit on {what} that could be set aside"),
+                "leave `instead` out; `gershun check --explain-plan` lists what is required".to_owned(),
+                place,
             ),
             Self::NoRow { standard, row, by } => (
                 format!("norm {standard} has no row \"{row}\" (asked for by {by})"),

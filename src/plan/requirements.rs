@@ -1,6 +1,7 @@
 //! Norm rows and `[[require]]` → requirements on what is measured. What a norm regulates and nothing
 //! here can judge becomes a requirement that is "not assessed", with the reason: never silence.
 
+use super::instead::set_aside;
 use super::whole_room::whole_room;
 use super::zones::zone_of;
 use super::{Plan, PlanError, PlannedArea, PlannedRequirement, PlannedRoom, Subject};
@@ -37,7 +38,7 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
         let light_scene = requirement.light_scene.or(own_scene).unwrap_or(0);
         let bounds = [requirement.min.map(Bound::Min), requirement.max.map(Bound::Max)];
         for bound in bounds.into_iter().flatten() {
-            plan.rooms[room].requirements.push(PlannedRequirement {
+            let own = PlannedRequirement {
                 standard: "project".into(),
                 clause: "[[require]]".into(),
                 subject: subject.clone(),
@@ -48,7 +49,12 @@ pub(super) fn plan(project: &Project, world: &World, plan: &mut Plan, errors: &m
                 bound,
                 verified: "project".into(),
                 modified: None,
-            });
+            };
+            let required = &mut plan.rooms[room].requirements;
+            if let Some(instead) = &requirement.instead {
+                set_aside(required, &own, instead, errors);
+            }
+            required.push(own);
         }
     }
 }

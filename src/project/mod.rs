@@ -436,6 +436,17 @@ pub struct CustomRequirement {
     pub max: Option<f64>,
     /// Light scene; `None`: the first.
     pub light_scene: Option<usize>,
+    /// Why it holds instead of the norm's limit on the same; `None`: beyond the norm.
+    pub instead: Option<Instead>,
+}
+
+/// A limit of the norm set aside by one of the user's own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Instead {
+    /// Why, in the user's words.
+    pub reason: String,
+    /// Where it is written.
+    pub written: Place,
 }
 
 /// Subject of a [`CustomRequirement`], by index within the world.

@@ -343,6 +343,7 @@ pub struct RequireSection {
     pub min: Option<At<f64>>,
     pub max: Option<At<f64>>,
     pub light_scene: Option<At<String>>,
+    pub instead: Option<At<String>>,
 }
 
 #[derive(Debug, Deserialize)]

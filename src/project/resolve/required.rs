@@ -6,7 +6,7 @@ use crate::glare::index;
 use crate::project::context::Context;
 use crate::project::diagnostics::suggestion;
 use crate::project::schema::{At, File, RequireSection};
-use crate::project::{CustomRequirement, CustomSubject, LightScene};
+use crate::project::{CustomRequirement, CustomSubject, Instead, LightScene};
 use crate::quantity::{Quantity, SPELLINGS, Statistic};
 
 /// Keys of [`Statistic`].
@@ -71,8 +71,22 @@ pub fn requirements(file: &File, drafts: &mut [Draft], light_scenes: &[LightScen
             min: section.min.as_ref().map(|min| *min.get_ref()),
             max: section.max.as_ref().map(|max| *max.get_ref()),
             light_scene,
+            instead: instead(section, file, context),
         });
     }
+}
+
+/// Why a requirement holds instead of the norm's.
+fn instead(section: &RequireSection, file: &File, context: &mut Context) -> Option<Instead> {
+    let reason = section.instead.as_ref()?;
+    if reason.get_ref().trim().is_empty() {
+        let hint = "instead = \"agreed with the client on 3 May\": it stands in the report";
+        context.error(&reason.span(), "a limit of the norm is set aside without a reason", hint);
+    } else if file.norm.is_none() {
+        let hint = "leave `instead` out, or name a norm: [norm] standard = \"…\"";
+        context.error(&reason.span(), "there is no norm whose limit could be set aside", hint);
+    }
+    Some(Instead { reason: reason.get_ref().trim().to_owned(), written: context.place(&reason.span()) })
 }
 
 /// The quantity that a requirement names; of a viewpoint also a row of the table of indices.

@@ -577,6 +577,10 @@ pub const SENTENCES: &[(&str, &str)] = &[
     ("nothing of it is judged yet: {}", "пока не оценивается: {}"),
     ("the norm's row has no limit", "строка нормы не содержит предела"),
     ("the quantity is undefined where no light arrives", "величина не определена там, куда не падает свет"),
+    (
+        "set aside, the project has a limit of its own: {}",
+        "не применяется, в проекте задан собственный предел: {}",
+    ),
     ("{} is not measured on this area", "{} на этой области не измеряется"),
     (
         "a room has no grid of its own: name one of its areas",

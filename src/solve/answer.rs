@@ -3,8 +3,9 @@
 //!
 //!   Ŷ = direct + (1/n) Σ c_i L̃(q_i) + (1/m) Σ c_j Σ_v R_v,   R = L_direct + a·L̃(next) − L̃(here)
 //!
-//! Walks survive each vertex with probability a (its albedo), to their end; the sum telescopes, so
-//! the mean is the truth whatever the field is (Kollig & Keller's idea with a stored control).
+//! Walks survive each vertex with probability a (its albedo), less often where the field is darker than at their
+//! start, with a weight that makes up for it, to their end; the sum telescopes, so the mean is the truth whatever the
+//! field is (Kollig & Keller's idea with a stored control).
 //!
 //! Everything above is about *diffuse* luminance. Mirrors, panes and glossy lobes belong to the way
 //! from one diffuse place to the next: a look along a ray returns all places it leads to, each of
@@ -27,6 +28,10 @@ use crate::sphere;
 /// Steps after which a walk is cut and counted: only a sealed cavity without absorption gets here.
 const MOST_STEPS: u32 = 100_000;
 
+/// Walks go on in places darker than their start no less than this often for each time that the albedo would have it:
+/// their weight grows by no more than its inverse.
+const RAREST: f64 = 0.05;
+
 /// Points of every opening in each block where a kernel has edges.
 const EDGE_POINTS: u32 = 16;
 
@@ -43,8 +48,8 @@ pub(super) struct Desk {
     pub(super) residual: Vec<f64>,
     /// Openings and landings met on the way.
     pub(super) sight: Sight,
-    /// Places from which the current walk still has to go on.
-    pending: Vec<Landing>,
+    /// Places from which the current walk still has to go on, each with where it began.
+    pending: Vec<[Landing; 2]>,
     /// Where the walk goes on from its current place.
     onward: Vec<Landing>,
     /// Highlights about the receiver or the current place.
@@ -334,12 +339,12 @@ pub(super) fn walk(prepared: &Prepared, rng: &mut Rng, desk: &mut Desk) {
     desk.pending.clear();
     for landing in &desk.sight.landings {
         if landing.weight >= 1.0 || rng.uniform() < landing.weight {
-            desk.pending.push(Landing { weight: landing.weight.max(1.0), ..*landing });
+            desk.pending.push([Landing { weight: landing.weight.max(1.0), ..*landing }; 2]);
         }
     }
     for _ in 0..MOST_STEPS {
-        let Some(here) = desk.pending.pop() else { return };
-        step(prepared, here, rng, desk);
+        let Some([here, start]) = desk.pending.pop() else { return };
+        step(prepared, here, &start, rng, desk);
     }
     desk.sight.counts.cut += 1;
 }
@@ -347,7 +352,7 @@ pub(super) fn walk(prepared: &Prepared, rng: &mut Rng, desk: &mut Desk) {
 /// One vertex of a walk: adds R = L_direct + a·(what is seen from here) − L̃(here), and decides where
 /// the walk goes on. A look that passed glossy surfaces may have landed more than once: it goes on
 /// from each place, which multiplies walks no faster than surfaces reflect.
-fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
+fn step(prepared: &Prepared, here: Landing, start: &Landing, rng: &mut Rng, desk: &mut Desk) {
     let (scene, emitters, effort) = (prepared.scene, &prepared.emitters, &prepared.effort);
     let (reflectance, transmittance) = scene.bsdf(here.triangle).diffuse();
     let albedo = reflectance + transmittance;
@@ -439,10 +444,25 @@ fn step(prepared: &Prepared, here: Landing, rng: &mut Rng, desk: &mut Desk) {
         }
     }
     desk.bundles = bundles;
-    if !desk.onward.is_empty() && rng.uniform() < albedo {
-        let weighted = |next: &Landing| Landing { weight: here.weight * next.weight, ..*next };
-        desk.pending.extend(desk.onward.iter().map(weighted));
+    for next in &desk.onward {
+        let whole = here.weight * next.weight * albedo;
+        let survives =
+            survival(whole / start.weight, albedo, stored(prepared, start), stored(prepared, next));
+        if rng.uniform() < survives {
+            desk.pending.push([Landing { weight: whole / survives, ..*next }, *start]);
+        }
     }
+}
+
+/// Chance that a walk goes on. What it may still bring is in proportion to the luminance about it, so its weight times
+/// that luminance is kept near what it was at the start: it has less to do in places that are dim in every channel.
+/// `whole`: its weight in terms of that at the start, all absorption taken off.
+fn survival(whole: f64, albedo: f64, at_start: &[f64], here: &[f64]) -> f64 {
+    let ratios = at_start.iter().zip(here).filter(|(start, _)| **start > 0.0);
+    let brighter = ratios.map(|(start, here)| here / start).fold(f64::NEG_INFINITY, f64::max);
+    let wanted = if brighter.is_finite() { whole * brighter.max(RAREST) } else { albedo };
+    // Weights fall back to that of the start, and not below it: walks would have no end.
+    wanted.min(whole.max(albedo)).min(1.0)
 }
 
 /// Luminance stored at a place, per channel; none in a gap.

@@ -3,10 +3,13 @@
 use crate::emitters::Emitters;
 use crate::field::{LuminanceField, Reached};
 
-/// Sweeps end when the stored flux changes by less than this share …
+/// Sweeps end when what they would still bring is less than this share of the stored flux …
 const SETTLED: f64 = 1e-3;
-/// … or after this many; the rest is left to the residual.
+/// … or after this many; the rest is left to the residual …
 const MOST_SWEEPS: u32 = 100;
+/// … or when they have followed so many links: at a reflectance near 1 hundreds of sweeps are cheap beside the walks
+/// that would make up for them.
+const MOST_LOOKUPS: usize = 400_000_000;
 /// Every so many sweeps the field is scaled to balance: at a reflectance near 1 a sweep brings all
 /// places nearer by a thousandth of what they still lack.
 const BALANCED: u32 = 8;
@@ -54,7 +57,10 @@ pub(super) fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: 
         })
         .collect();
     let mut sums = vec![0.0; channels];
-    for number in 1..=MOST_SWEEPS {
+    let links: usize = collected.iter().map(|entry| entry.links.len()).sum();
+    let most = MOST_SWEEPS.max((MOST_LOOKUPS / (links * channels).max(1)) as u32);
+    let mut before = 0.0;
+    for number in 1..=most {
         if number.is_multiple_of(BALANCED) {
             balance(field, collected, &factor);
         }
@@ -78,9 +84,12 @@ pub(super) fn sweep(emitters: &Emitters, field: &mut LuminanceField, collected: 
                 *stored = next;
             }
         }
-        if change <= SETTLED * whole {
+        // A geometric series of changes; just balanced, a field changes by other amounts.
+        let ratio = if number.is_multiple_of(BALANCED) { 1.0 } else { (change / before).min(1.0) };
+        if change * ratio <= SETTLED * whole * (1.0 - ratio) {
             break;
         }
+        before = change;
     }
 }
 

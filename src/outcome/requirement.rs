@@ -66,6 +66,9 @@ pub struct Requirement {
 /// says it below, since the verdict is one on another plane.
 pub const OTHER_PLANE: &str = "the row names a plane at";
 
+/// How the reason of a limit begins that the project sets aside (`instead` of a `[[require]]`).
+pub const SET_ASIDE: &str = "set aside, the project has a limit of its own";
+
 /// A limit that stands instead of the norm's own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Modified {

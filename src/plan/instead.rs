@@ -2,7 +2,7 @@
 //! not assessed.
 
 use super::{PlanError, PlannedRequirement, Subject};
-use crate::outcome::Bound;
+use crate::outcome::{Bound, SET_ASIDE};
 use crate::project::Instead;
 
 /// Sets aside what the norm asks of the same place, quantity, statistic and side as `own`, or does not know of it.
@@ -28,8 +28,7 @@ pub(super) fn set_aside(
     let mut any = false;
     for other in required.iter_mut().filter(|other| replaced(other)) {
         any = true;
-        other.subject =
-            Subject::Missing(format!("set aside, the project has a limit of its own: {}", instead.reason));
+        other.subject = Subject::Missing(format!("{SET_ASIDE}: {}", instead.reason));
     }
     if !any {
         let what = format!("{} {} of \"{}\"", own.statistic.key(), own.quantity.key(), own.subject_name);

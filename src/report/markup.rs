@@ -17,7 +17,8 @@ pub fn subheading(lang: Lang, term: Term) -> String {
 
 /// A table; cells are HTML. A column is right-aligned where its letter in `align` is `r`, kept on
 /// one line where it is `w`, and wide and broken anywhere, as names may need it, where it is `a`. A
-/// row of one cell heads those that follow.
+/// row of one cell heads those that follow; one of two cells belongs to the row before it, its second cell under all
+/// columns but the first.
 pub fn grid(align: &str, head: &[&str], rows: &[Vec<String>]) -> String {
     let class = |column: usize| match align.as_bytes().get(column) {
         Some(b'r') => " class=\"n\"",
@@ -31,7 +32,7 @@ pub fn grid(align: &str, head: &[&str], rows: &[Vec<String>]) -> String {
         put(&mut html, format_args!("<th{class}>{cell}</th>"));
     }
     html.push_str("</tr></thead><tbody>\n");
-    for row in rows {
+    for (number, row) in rows.iter().enumerate() {
         if let [title] = row.as_slice() {
             let columns = head.len();
             put(
@@ -40,7 +41,18 @@ pub fn grid(align: &str, head: &[&str], rows: &[Vec<String>]) -> String {
             );
             continue;
         }
-        html.push_str("<tr>");
+        if let ([first, below], true) = (row.as_slice(), head.len() > 2) {
+            let columns = head.len() - 1;
+            put(
+                &mut html,
+                format_args!(
+                    "<tr><td>{first}</td><td class=\"note\" colspan=\"{columns}\">{below}</td></tr>\n"
+                ),
+            );
+            continue;
+        }
+        let is_held = head.len() > 2 && rows.get(number + 1).is_some_and(|next| next.len() == 2);
+        html.push_str(if is_held { "<tr class=\"held\">" } else { "<tr>" });
         for (column, cell) in row.iter().enumerate() {
             put(&mut html, format_args!("<td{}>{cell}</td>", class(column)));
         }

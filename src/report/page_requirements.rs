@@ -18,6 +18,10 @@ pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> Stri
             rows.push(vec![escape(&requirement.room)]);
         }
         rows.push(row(lang, requirement, naming));
+        let known_with_it = known_with_it(lang, requirement);
+        if !known_with_it.is_empty() {
+            rows.push(vec![String::new(), known_with_it.join("<br/>")]);
+        }
     }
     let head = [
         Term::Requirement,
@@ -29,7 +33,7 @@ pub fn requirements(lang: Lang, listed: &[&Requirement], naming: Naming) -> Stri
         Term::VerdictColumn,
     ]
     .map(|term| word(lang, term));
-    grid("walrrra", &head, &rows)
+    grid("walrrrw", &head, &rows)
 }
 
 fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
@@ -47,7 +51,7 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     vec![
         format!("<span title=\"{name}\">{}</span>", symbol(&text.symbol)),
         escape(&place),
-        format!("<span class=\"w\">{}{mark}</span><br/><span class=\"note\">{source}</span>", text.required),
+        format!("<span class=\"w\">{}{mark}</span><br/><span class=\"note w\">{source}</span>", text.required),
         text.value,
         text.interval,
         text.margin,
@@ -60,13 +64,18 @@ fn is_maintained(r: &Requirement) -> bool {
     r.note == "maintained"
 }
 
-/// The verdict's word and, below it, what must be known with it.
+/// The verdict's word.
 fn verdict(lang: Lang, r: &Requirement) -> String {
     let mut html =
         format!("<span class=\"{}\">{}</span>", class_of(Some(r.verdict)), words::verdict(lang, r.verdict));
     if is_at_the_limit(r) {
-        put(&mut html, format_args!(", {}", word(lang, Term::AtTheLimit)));
+        put(&mut html, format_args!(",<br/>{}", word(lang, Term::AtTheLimit)));
     }
+    html
+}
+
+/// What must be known with a verdict, below its row.
+fn known_with_it(lang: Lang, r: &Requirement) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     lines.extend(r.value.as_ref().err().map(|undefined| escape(&words::said(lang, &undefined.reason))));
     lines.extend((!r.note.is_empty() && !is_maintained(r)).then(|| escape(&words::note(lang, &r.note))));
@@ -87,10 +96,7 @@ fn verdict(lang: Lang, r: &Requirement) -> String {
             .filter(|_| close)
             .map(|risk| format!("{}: {}", word(lang, Term::AtRisk), escape(&words::said(lang, risk)))),
     );
-    for line in lines {
-        put(&mut html, format_args!("<br/><span class=\"note\">{line}</span>"));
-    }
-    html
+    lines
 }
 
 /// Relative margin below which the page says what may cost it.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::number;
 use super::words::{self, Lang, Symbol, Term, phrase, word};
-use crate::outcome::{Bound, NormOutcome, Outcome, Requirement, Verdict};
+use crate::outcome::{Bound, NormOutcome, Outcome, Requirement, SET_ASIDE, Verdict};
 use crate::quantity::Quantity;
 
 /// The cells of one requirement.
@@ -81,6 +81,11 @@ pub fn is_unverified(requirement: &Requirement) -> bool {
 /// Whether it is the project's own requirement, not the norm's.
 pub fn is_own(requirement: &Requirement) -> bool {
     requirement.standard == PROJECT
+}
+
+/// Whether the project sets the limit aside by one of its own.
+pub fn is_set_aside(requirement: &Requirement) -> bool {
+    requirement.value.as_ref().is_err_and(|undefined| undefined.reason.starts_with(SET_ASIDE))
 }
 
 /// A requirement in words.
@@ -239,6 +244,7 @@ pub fn overall(lang: Lang, outcome: &Outcome) -> String {
 pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) {
     let tally = Tally::of(&outcome.requirements);
     let of_norm = Tally::of(outcome.requirements.iter().filter(|r| r.standard != PROJECT));
+    let set_aside = outcome.requirements.iter().filter(|one| is_set_aside(one)).count();
     let norm = outcome.norm.as_ref().map(|norm| norm.short.as_str());
     let project = word(lang, Term::ProjectRequirements);
     let own = Tally::of(outcome.requirements.iter().filter(|r| r.standard == PROJECT));
@@ -269,8 +275,12 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
             counts.push(count(Term::PassedOf, decisive.pass));
             // Nobody signs a norm of which a part was left out: the headline says so, not the small print alone.
             let is_part = norm_decides && norm.is_some() && of_norm.not_assessed > 0;
-            let term = if is_part { Term::CompliesInPart } else { Term::CompliesWith };
-            phrase(lang, term, &[whose.unwrap_or(project)])
+            let whose = whose.unwrap_or(project);
+            match (is_part, set_aside) {
+                (true, 0) => phrase(lang, Term::CompliesInPart, &[whose]),
+                (true, _) => phrase(lang, Term::CompliesButFor, &[whose, &set_aside.to_string()]),
+                (false, _) => phrase(lang, Term::CompliesWith, &[whose]),
+            }
         }
         Some(_) => {
             counts.push(count(Term::OpenOf, decisive.open));
@@ -300,6 +310,9 @@ pub fn overall_parts(lang: Lang, outcome: &Outcome) -> (String, Option<String>) 
     }
     if tally.not_assessed > 0 {
         counts.push(phrase(lang, Term::NotAssessedCount, &[&tally.not_assessed.to_string()]));
+    }
+    if set_aside > 0 {
+        counts.push(phrase(lang, Term::SetAsideCount, &[&set_aside.to_string()]));
     }
     (head, (!counts.is_empty()).then(|| counts.join("; ")))
 }

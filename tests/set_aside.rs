@@ -47,7 +47,7 @@ fn a_limit_that_is_set_aside_stays_in_sight_and_is_not_assessed() {
     let outcome = judged(&require("min = 250\ninstead = \"a store, as agreed\""));
     let norm = of(&outcome, "norm");
     assert_eq!(norm.verdict, Verdict::NotAssessed);
-    assert!(matches!(norm.bound, Bound::Min(limit) if limit == 500.0), "{:?}", norm.bound);
+    assert!(matches!(norm.bound, Bound::Min(limit) if (limit - 500.0).abs() < 1e-9), "{:?}", norm.bound);
     let reason = norm.value.as_ref().expect_err("no value").reason.as_str();
     assert_eq!(reason, "set aside, the project has a limit of its own: a store, as agreed");
     let russian = said(Lang::Ru, reason);

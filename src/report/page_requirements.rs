@@ -51,7 +51,10 @@ fn row(lang: Lang, r: &Requirement, naming: Naming) -> Vec<String> {
     vec![
         format!("<span title=\"{name}\">{}</span>", symbol(&text.symbol)),
         escape(&place),
-        format!("<span class=\"w\">{}{mark}</span><br/><span class=\"note w\">{source}</span>", text.required),
+        format!(
+            "<span class=\"w\">{}{mark}</span><br/><span class=\"note w\">{source}</span>",
+            text.required
+        ),
         text.value,
         text.interval,
         text.margin,

@@ -18,6 +18,7 @@ use glam::DVec3;
 use super::beacons::{Beacons, Branch, Chances};
 use super::highlights::{self, Bundle};
 use super::look::{Landing, Sight, add_direct, add_emission, look};
+use super::survival::survival;
 use super::{PARTS, Part, Prepared, Sheet, lifted, turn};
 use crate::field::LuminanceField;
 use crate::query::{Kernel, Ray, Receiver};
@@ -27,10 +28,6 @@ use crate::sphere;
 
 /// Steps after which a walk is cut and counted: only a sealed cavity without absorption gets here.
 const MOST_STEPS: u32 = 100_000;
-
-/// Walks go on in places darker than their start no less than this often for each time that the albedo would have it:
-/// their weight grows by no more than its inverse.
-const RAREST: f64 = 0.05;
 
 /// Points of every opening in each block where a kernel has edges.
 const EDGE_POINTS: u32 = 16;
@@ -452,17 +449,6 @@ fn step(prepared: &Prepared, here: Landing, start: &Landing, rng: &mut Rng, desk
             desk.pending.push([Landing { weight: whole / survives, ..*next }, *start]);
         }
     }
-}
-
-/// Chance that a walk goes on. What it may still bring is in proportion to the luminance about it, so its weight times
-/// that luminance is kept near what it was at the start: it has less to do in places that are dim in every channel.
-/// `whole`: its weight in terms of that at the start, all absorption taken off.
-fn survival(whole: f64, albedo: f64, at_start: &[f64], here: &[f64]) -> f64 {
-    let ratios = at_start.iter().zip(here).filter(|(start, _)| **start > 0.0);
-    let brighter = ratios.map(|(start, here)| here / start).fold(f64::NEG_INFINITY, f64::max);
-    let wanted = if brighter.is_finite() { whole * brighter.max(RAREST) } else { albedo };
-    // Weights fall back to that of the start, and not below it: walks would have no end.
-    wanted.min(whole.max(albedo)).min(1.0)
 }
 
 /// Luminance stored at a place, per channel; none in a gap.

@@ -20,6 +20,7 @@ mod path;
 pub mod picture;
 mod prepare;
 mod refine;
+mod survival;
 mod sweep;
 mod thumbnail;
 
